@@ -1,0 +1,1 @@
+"""What excites the system: roughness of wheel and rail."""

@@ -1,0 +1,1 @@
+"""Green's functions of wheel and track, discretised in time."""

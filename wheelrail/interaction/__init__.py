@@ -1,0 +1,1 @@
+"""The coupled system: model, state and the time step."""

@@ -1,0 +1,1 @@
+"""Exact and independent solutions, for tests, examples and documentation only."""
