@@ -1,0 +1,31 @@
+"""Names that select a model: those of this version and those that the case file format foresees for later ones."""
+
+from __future__ import annotations
+
+from wheelrail.version import __version__
+
+__all__ = ["LATER_CHOICES", "LATER_KEYS", "TAG_KEYS", "not_available"]
+
+TAG_KEYS: dict[str, str] = {"wheel": "model", "track": "model", "contact": "normal", "excitation": "type"}
+"""Key that says which table a section is."""
+
+LATER_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
+    ("wheel", "model"): ("flexible",),
+    ("track", "model"): ("waveguide",),
+    ("contact", "normal"): ("half-space",),
+    ("contact", "tangential"): ("transient", "fastsim", "linear"),
+    ("friction", "law"): ("kraft", "polach", "table"),
+    ("excitation", "type"): ("wheel-flat", "rail-joint"),
+}
+"""Values by section and key."""
+
+LATER_KEYS: dict[str, frozenset[str]] = {
+    "contact": frozenset({"wheel_profile", "rail_profile", "inclination"}),
+    "excitation": frozenset({"coherence", "lines"}),
+}
+"""Keys by section."""
+
+
+def not_available() -> str:
+    """Words that follow a name which this version does not offer."""
+    return f"not available in this version ({__version__})"

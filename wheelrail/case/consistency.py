@@ -1,0 +1,175 @@
+"""Faults that only show when several keys of a case are seen together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+__all__ = ["cross_faults", "excitation_label", "shown"]
+
+GRID_TOLERANCE = 1e-6
+"""A length counts as n grid steps if it is so to this share of a step; decimal fractions are not exact."""
+
+
+def shown(value: float) -> str:
+    """Return a number as a user would type it."""
+    return f"{value:.12g}"
+
+
+def excitation_label(index: int) -> str:
+    """Name of the excitation at a zero-based index, counted as in the file."""
+    return f"excitation #{index + 1}"
+
+
+def cross_faults(data: Mapping[str, Any]) -> list[str]:
+    """Find the faults that involve more than one key.
+
+    Parameters
+    ----------
+    data : mapping
+        Case in the layout of the file, presets resolved. Values that are missing or bad on their own are passed
+        over: they are reported where they stand.
+
+    Returns
+    -------
+    list of str
+        One line per fault; empty if the keys agree.
+    """
+    simulation, track, contact = (_table(data, name) for name in ("simulation", "track", "contact"))
+    faults: list[str] = []
+    dx = _positive(simulation, "dx")
+    if dx is not None:
+        faults += _start_faults(simulation, dx)
+        if track.get("model") == "discrete":
+            faults += _spacing_faults(track, dx)
+        faults += _odd_faults("contact.length", _positive(contact, "length"), "simulation.dx", dx)
+    faults += _odd_faults("contact.width", _positive(contact, "width"), "contact.dy", _positive(contact, "dy"))
+    faults += _prefilter_faults(contact)
+    excitations = data.get("excitation")
+    for index, excitation in enumerate(excitations if isinstance(excitations, list) else ()):
+        if isinstance(excitation, dict):
+            faults += _excitation_faults(excitation_label(index), excitation, dx)
+    faults += _record_faults(_table(data, "output"))
+    return faults
+
+
+def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    table = data.get(name)
+    return table if isinstance(table, dict) else {}
+
+
+def _number(table: Mapping[str, Any], key: str) -> float | None:
+    value = table.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        return float(value) if math.isfinite(value) else None
+    except OverflowError:
+        return None
+
+
+def _positive(table: Mapping[str, Any], key: str) -> float | None:
+    value = _number(table, key)
+    return value if value is not None and value > 0 else None
+
+
+def _steps(length: float, step: float) -> tuple[float, bool]:
+    """Nearest whole number of steps in a length, and whether the length is that number of steps."""
+    count = length / step
+    if not math.isfinite(count):
+        return 0.0, False
+    return round(count) + 0.0, abs(count - round(count)) <= GRID_TOLERANCE
+
+
+def _start_faults(simulation: Mapping[str, Any], dx: float) -> Iterator[str]:
+    start = _number(simulation, "start_position")
+    if start is None:
+        return
+    count, fits = _steps(start, dx)
+    if not fits:
+        yield (
+            f"simulation.start_position = {shown(start)}: must be a multiple of simulation.dx = {shown(dx)} (m); "
+            f"the nearest is {shown(count * dx)}"
+        )
+
+
+def _spacing_faults(track: Mapping[str, Any], dx: float) -> Iterator[str]:
+    spacing = _positive(track, "sleeper_spacing")
+    if spacing is None:
+        return
+    count, fits = _steps(spacing, dx)
+    if not fits or count < 1:
+        yield (
+            f"track.sleeper_spacing = {shown(spacing)}: must be a multiple of simulation.dx = {shown(dx)} (m); "
+            f"the nearest dx that fits is {shown(spacing / max(count, 1))}"
+        )
+
+
+def _odd_faults(name: str, length: float | None, step_name: str, step: float | None) -> Iterator[str]:
+    if length is None or step is None:
+        return
+    count, fits = _steps(length, step)
+    if fits and count % 2 == 1:
+        return
+    below = 2 * math.floor((length / step - 1) / 2) + 1 if math.isfinite(length / step) else -1
+    nearest = " and ".join(shown(odd * step) for odd in (below, below + 2) if odd > 0)
+    yield f"{name} = {shown(length)}: must be an odd number of {step_name} = {shown(step)} (m); nearest: {nearest}"
+
+
+def _prefilter_faults(contact: Mapping[str, Any]) -> Iterator[str]:
+    prefilter = contact.get("prefilter")
+    if prefilter not in ("average", "winkler"):
+        return
+    if contact.get("normal") == "winkler":
+        yield (
+            f'contact.prefilter = "{prefilter}": only with contact.normal = "hertz"; '
+            'with "winkler", which filters by itself, it must be "none"'
+        )
+    elif contact.get("normal") == "hertz" and "length" not in contact:
+        yield f'contact.length: missing; contact.prefilter = "{prefilter}" needs it (m)'
+
+
+def _excitation_faults(label: str, excitation: Mapping[str, Any], dx: float | None) -> Iterator[str]:
+    match excitation.get("type"):
+        case "sinusoid":
+            wavelength = _positive(excitation, "wavelength")
+            if wavelength is not None and dx is not None and wavelength <= 2 * dx * (1 + GRID_TOLERANCE):
+                yield (
+                    f"{label}.wavelength = {shown(wavelength)}: must be > 2 simulation.dx = {shown(2 * dx)} "
+                    "(m); the grid can't carry a shorter one"
+                )
+        case "measured":
+            if excitation.get("on") == "wheel" and "beyond_end" in excitation:
+                yield f'{label}.beyond_end: not used with on = "wheel": the line repeats every turn; leave it out'
+        case "spectrum":
+            yield from _spectrum_faults(label, excitation, dx)
+
+
+def _spectrum_faults(label: str, excitation: Mapping[str, Any], dx: float | None) -> Iterator[str]:
+    if "name" in excitation and "file" in excitation:
+        yield f"{label}: name and file both given; give one of them"
+    elif "name" not in excitation and "file" not in excitation:
+        yield f"{label}.name: missing; give name (a spectrum that comes with the program) or file (a CSV file)"
+    if "length" not in excitation:
+        return
+    if excitation.get("on") == "wheel":
+        yield f'{label}.length: not used with on = "wheel": the line repeats every turn; leave it out'
+        return
+    length = _positive(excitation, "length")
+    if length is not None and dx is not None:
+        count, fits = _steps(length, dx)
+        if not fits or count < 1:
+            yield (
+                f"{label}.length = {shown(length)}: must be a multiple of simulation.dx = {shown(dx)} (m); "
+                f"the nearest is {shown(max(count, 1) * dx)}"
+            )
+
+
+def _record_faults(output: Mapping[str, Any]) -> Iterator[str]:
+    record = output.get("record")
+    if not isinstance(record, list):
+        return
+    names = [name for name in record if isinstance(name, str)]
+    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
+        yield f'output.record: "{name}" is given {names.count(name)} times; once is enough'

@@ -1,0 +1,212 @@
+"""The tables of a case file except ``[[excitation]]``: keys, units and ranges."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+
+from wheelrail.case.fields import Section, quantity
+
+__all__ = [
+    "OUTPUT_NAMES",
+    "Contact",
+    "Creepage",
+    "DiscreteTrack",
+    "Friction",
+    "HertzContact",
+    "Load",
+    "Output",
+    "Rigid1DofWheel",
+    "Rigid2DofWheel",
+    "RigidTrack",
+    "RigidWheel",
+    "Simulation",
+    "Track",
+    "Wheel",
+    "WinklerContact",
+    "as_tuple",
+]
+
+
+def as_tuple(value: object) -> object:
+    """Turn the list that TOML gives into a tuple, which an immutable table needs."""
+    return tuple(value) if isinstance(value, list) else value
+
+
+class Simulation(Section):
+    """``[simulation]``: speed, grid and length of the run."""
+
+    speed: float = quantity("Rolling speed", "m/s", gt=0, le=200)
+    dx: float = quantity("Grid spacing in the rolling direction; the time step is dx / speed", "m", gt=0)
+    duration: float = quantity("Simulated time of a stand-alone run", "s", ge=0)
+    start_position: float = quantity("First contact position, measured from a sleeper; a multiple of dx", "m")
+
+
+class RigidWheel(Section):
+    """``[wheel]`` without dynamics of its own: the quasi-static case."""
+
+    model: Literal["rigid"] = Field(description="Wheel model: no dynamics")
+    radius: float = quantity("Rolling radius", "m", gt=0)
+
+
+class Rigid1DofWheel(Section):
+    """``[wheel]`` as a mass on the primary suspension (Pieringer 2011, section 3.2.1)."""
+
+    model: Literal["rigid-1dof"] = Field(description="Wheel model: one mass on the primary suspension")
+    radius: float = quantity("Rolling radius", "m", gt=0)
+    mass: float = quantity("Wheel mass (half the wheelset)", "kg", gt=0)
+    suspension_stiffness: float = quantity("Stiffness of the primary suspension; 0 = unsprung mass", "N/m", ge=0)
+    suspension_damping: float = quantity("Damping of the primary suspension", "N s/m", ge=0)
+
+
+class Rigid2DofWheel(Section):
+    """``[wheel]`` as two masses; the small one at the contact stands for the wheel's flexibility."""
+
+    model: Literal["rigid-2dof"] = Field(description="Wheel model: wheel mass and a small mass at the contact")
+    radius: float = quantity("Rolling radius", "m", gt=0)
+    mass: float = quantity("Wheel mass (half the wheelset)", "kg", gt=0)
+    suspension_stiffness: float = quantity("Stiffness of the primary suspension; 0 = unsprung mass", "N/m", ge=0)
+    suspension_damping: float = quantity("Damping of the primary suspension", "N s/m", ge=0)
+    contact_mass: float = quantity("Mass at the contact", "kg", gt=0)
+    contact_stiffness: float = quantity("Stiffness between the contact mass and the wheel mass", "N/m", gt=0)
+    contact_damping: float = quantity("Damping between the contact mass and the wheel mass", "N s/m", gt=0)
+
+
+class RigidTrack(Section):
+    """``[track]`` without dynamics of its own."""
+
+    model: Literal["rigid"] = Field(description="Track model: no dynamics")
+
+
+class DiscreteTrack(Section):
+    """``[track]`` as a Rayleigh-Timoshenko rail on discrete supports (Pieringer 2011, section 3.3.1)."""
+
+    model: Literal["discrete"] = Field(description="Track model: Timoshenko rail on pads, sleepers and ballast")
+    bending_stiffness: float = quantity("Bending stiffness EI of the rail", "N m2", gt=0)
+    shear_stiffness: float = quantity("Shear stiffness kappa G A of the rail", "N", gt=0)
+    mass_per_length: float = quantity("Mass per length of the rail", "kg/m", gt=0)
+    rotary_inertia: float = quantity("Rotary inertia per length rho I of the rail", "kg m", gt=0)
+    sleeper_spacing: float = quantity("Sleeper spacing; a multiple of dx", "m", gt=0)
+    bays: int = quantity("Number of sleeper bays of the modelled track", "1", ge=20, multiple_of=2)
+    elements_per_bay: int = quantity("Beam elements per sleeper bay", "1", ge=1)
+    pad_stiffness: float = quantity("Stiffness of one rail pad", "N/m", gt=0)
+    pad_damping: float = quantity("Damping of one rail pad", "N s/m", ge=0)
+    sleeper_mass: float = quantity("Sleeper mass per rail (half a sleeper)", "kg", gt=0)
+    ballast_stiffness: float = quantity("Ballast stiffness under half a sleeper", "N/m", gt=0)
+    ballast_damping: float = quantity("Ballast damping under half a sleeper", "N s/m", ge=0)
+    memory: float | None = quantity(
+        "Length of the moving Green's functions; left out: until they have decayed to a stated energy", "s", None, gt=0
+    )
+
+
+class _ContactBase(Section):
+    rail_radius: float = quantity("Transverse radius of the rail head", "m", gt=0)
+    wheel_transverse_radius: float | None = quantity(
+        "Transverse radius of the wheel tread, convex; left out: straight (a cone)", "m", None, gt=0
+    )
+    youngs_modulus: float = quantity("Young's modulus of wheel and rail", "Pa", gt=0)
+    poisson_ratio: float = quantity("Poisson's ratio of wheel and rail", "1", ge=0, lt=0.5)
+    dy: float | None = quantity("Lateral element size; no effect with hertz and winkler", "m", None, gt=0)
+    width: float | None = quantity(
+        "Width of the potential contact area, an odd number of dy; no effect with hertz and winkler", "m", None, gt=0
+    )
+    prefilter: Literal["none", "average", "winkler"] = Field(
+        default="none",
+        description="Filter of the roughness before a hertz contact: none, the average over the nominal contact "
+        "length, or the equivalent roughness of the Winkler bedding; winkler contact filters itself and takes none",
+    )
+    tangential: Literal["none"] = Field(default="none", description="Tangential contact model: none")
+    lateral_shift: float = quantity("Lateral displacement of the wheelset on the rail", "m", 0.0)
+
+
+class HertzContact(_ContactBase):
+    """``[contact]`` by the Hertz spring."""
+
+    normal: Literal["hertz"] = Field(description="Normal contact model: Hertz spring")
+    length: float | None = quantity(
+        "Length of the potential contact area, an odd number of dx; needed by the prefilters", "m", None, gt=0
+    )
+
+
+class WinklerContact(_ContactBase):
+    """``[contact]`` by the two-dimensional Winkler bedding."""
+
+    normal: Literal["winkler"] = Field(description="Normal contact model: Winkler bedding along the rail")
+    length: float = quantity("Length of the potential contact area, an odd number of dx", "m", gt=0)
+
+
+class Friction(Section):
+    """``[friction]``; without effect while there is no tangential contact model."""
+
+    law: Literal["constant"] = Field(description="Friction law: constant coefficient")
+    coefficient: float = quantity("Friction coefficient", "1", ge=0)
+    memory_distance: float = quantity("Friction memory; 0 = none, and no effect under a constant law", "m", 0.0, ge=0)
+
+
+class Load(Section):
+    """``[load]``: what the vehicle puts on the wheel."""
+
+    preload: float = quantity("Quasi-static vertical load on the wheel", "N", gt=0)
+    coupling: Literal["load", "displacement"] = Field(
+        description="load: the vehicle gives the load; displacement: it gives the wheel's rigid displacement"
+    )
+
+
+class Creepage(Section):
+    """``[creepage]``: rail relative to wheel over the speed; no effect without a tangential contact model."""
+
+    x: float = quantity("Longitudinal creepage", "1")
+    y: float = quantity("Lateral creepage", "1")
+    spin: float = quantity("Spin creepage", "1/m")
+
+
+OutputName = Literal[
+    "force_x",
+    "force_y",
+    "force_z",
+    "force_x_mean",
+    "force_y_mean",
+    "force_z_mean",
+    "force_z_max",
+    "force_z_min",
+    "moment_spin",
+    "wheel_disp_x",
+    "wheel_disp_y",
+    "wheel_disp_z",
+    "rail_disp_x",
+    "rail_disp_y",
+    "rail_disp_z",
+    "contact_stiffness_z",
+    "contact_area",
+    "contact_length",
+    "contact_width",
+    "pressure_max",
+    "slip_fraction",
+    "friction_power",
+    "approach",
+    "in_contact",
+    "distance",
+    "solver_iterations",
+    "solver_residual",
+]
+OUTPUT_NAMES: tuple[str, ...] = OutputName.__args__
+"""Output ports that can be recorded."""
+
+
+class Output(Section):
+    """``[output]``: what a stand-alone run writes."""
+
+    record: Annotated[tuple[OutputName, ...], BeforeValidator(as_tuple)] = Field(
+        default=("force_z",), description="Output ports to record, each once", min_length=1
+    )
+    file: str = Field(
+        default="run.nc",
+        description="Result file (netCDF), relative to the working folder; left out: named after the case file",
+        min_length=1,
+    )
+
+
+Wheel = Annotated[RigidWheel | Rigid1DofWheel | Rigid2DofWheel, Field(discriminator="model")]
+Track = Annotated[RigidTrack | DiscreteTrack, Field(discriminator="model")]
+Contact = Annotated[HertzContact | WinklerContact, Field(discriminator="normal")]
