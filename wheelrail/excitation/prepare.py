@@ -1,0 +1,160 @@
+"""From one entry ``[[excitation]]`` of a case to a source of roughness."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from wheelrail.errors import DataFileError, ParameterError
+from wheelrail.excitation.measured import read_measured_line
+from wheelrail.excitation.named_spectra import SpectrumTable, named_spectrum, read_spectrum
+from wheelrail.excitation.sources import Sinusoid, Source, SpectrumLine
+from wheelrail.excitation.synthesis import plan_harmonics, rail_repeat_length
+
+__all__ = ["prepare_source"]
+
+_MOST_SAMPLES = 20_000_000
+
+
+def prepare_source(*, type: str, dx: float, wheel_radius: float | None, **keys: object) -> tuple[Source, list[str]]:
+    """Make the source that an entry of a case describes.
+
+    Parameters
+    ----------
+    type : {"sinusoid", "measured", "spectrum"}
+        Kind of source, and with it the other keys:
+        sinusoid: amplitude, wavelength; measured: file (resolved path), on, beyond_end, optionally column;
+        spectrum: name or file, on, seed, optionally length (rail only).
+    dx : float
+        Grid spacing, m.
+    wheel_radius : float or None
+        Rolling radius, m; needed by sources on the wheel.
+    **keys
+        Keys of the entry; a key that is None counts as left out.
+
+    Returns
+    -------
+    source : Source
+        Not yet realised if it is random.
+    notes : list of str
+        What was done and left out, for the user.
+
+    Raises
+    ------
+    ParameterError
+        Unknown type or key, missing key, or a value that is not allowed.
+    DataFileError
+        A file can't be read or used.
+    """
+    makers: dict[str, Callable[..., tuple[Source, list[str]]]] = {
+        "sinusoid": _sinusoid,
+        "measured": _measured,
+        "spectrum": _spectrum,
+    }
+    if type not in makers:
+        raise ParameterError("type", type, f"allowed: {', '.join(makers)}")
+    given = {key: value for key, value in keys.items() if value is not None}
+    maker = makers[type]
+    try:
+        inspect.signature(maker).bind(dx=dx, wheel_radius=wheel_radius, **given)
+    except TypeError as error:
+        raise ParameterError("excitation", sorted(given), f"keys of type {type!r}: {error}") from None
+    return maker(dx=dx, wheel_radius=wheel_radius, **given)
+
+
+def _sinusoid(
+    *,
+    dx: float,
+    wheel_radius: float | None,  # noqa: ARG001
+    amplitude: float,
+    wavelength: float,
+) -> tuple[Source, list[str]]:
+    if not np.isfinite(amplitude):
+        raise ParameterError("amplitude", amplitude, "it must be finite")
+    if not (np.isfinite(wavelength) and wavelength > 2.0 * dx):
+        raise ParameterError("wavelength", wavelength, f"it must be longer than 2 dx = {2.0 * dx:g} m")
+    return Sinusoid(amplitude=amplitude, wavelength=wavelength, dx=dx), []
+
+
+def _measured(
+    *,
+    dx: float,
+    wheel_radius: float | None,
+    file: str | Path,
+    on: str,
+    beyond_end: str = "stop",
+    column: str | int | None = None,
+) -> tuple[Source, list[str]]:
+    return read_measured_line(file, dx=dx, on=on, wheel_radius=wheel_radius, beyond_end=beyond_end, column=column)
+
+
+def _spectrum(
+    *,
+    dx: float,
+    wheel_radius: float | None,
+    on: str,
+    seed: int,
+    name: str | None = None,
+    file: str | Path | None = None,
+    length: float | None = None,
+) -> tuple[Source, list[str]]:
+    if (name is None) == (file is None):
+        raise ParameterError("name", name, "a spectrum needs either a name or a file, not both")
+    if on not in ("wheel", "rail"):
+        raise ParameterError("on", on, 'allowed: "wheel" or "rail"')
+    if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
+        raise ParameterError("seed", seed, "it must be a whole number, not negative")
+    table = named_spectrum(name) if name is not None else read_spectrum(file)  # type: ignore[arg-type]
+    notes = [] if name is None else [f"{table.name}: {table.source}"]
+    if table.surface not in (None, on):
+        notes.append(f"{table.name}: a spectrum of the {table.surface} is used on the {on}")
+    length = _repeat_length(table, dx=dx, wheel_radius=wheel_radius, on=on, length=length, notes=notes)
+    label = f"spectrum {table.name} on the {on}"
+    recipe = SpectrumLine(
+        wavelengths=table.wavelengths, levels=table.levels, length=length, seed=int(seed), dx=dx, on=on, name=label
+    )
+    try:
+        plan = plan_harmonics(wavelengths=recipe.wavelengths, levels=recipe.levels, count=recipe.count, dx=dx)
+    except ValueError:
+        raise DataFileError(
+            f"{label}: no band fits between 2 dx = {2.0 * dx:g} m and the repeat length of {length:g} m "
+            f"(wavelengths {table.wavelengths.min():.4g} m to {table.wavelengths.max():.4g} m)"
+        ) from None
+    for mask, reason in (
+        (plan.too_short, f"they reach below the wavelength 2 dx = {2.0 * dx:g} m"),
+        (plan.without_harmonic, f"no whole fraction of the repeat length of {recipe.count * dx:.6g} m falls into them"),
+    ):
+        if np.any(mask):
+            bands = ", ".join(f"{wavelength * 1e3:.4g}" for wavelength in table.wavelengths[mask])
+            notes.append(f"{label}: bands left out (centre wavelength, mm): {bands}; {reason}")
+    return recipe, notes
+
+
+def _repeat_length(
+    table: SpectrumTable, *, dx: float, wheel_radius: float | None, on: str, length: float | None, notes: list[str]
+) -> float:
+    if on == "wheel":
+        if length is not None:
+            raise ParameterError("length", length, "on the wheel the roughness repeats every turn; leave length out")
+        if wheel_radius is None or not wheel_radius > 0.0:
+            raise ParameterError(
+                "wheel_radius", wheel_radius, "a spectrum on the wheel needs the rolling radius, above 0 m"
+            )
+        turn = 2.0 * np.pi * wheel_radius
+        count = round(turn / dx)
+        notes.append(
+            f"{table.name}: one turn of {turn:.6g} m is taken as {count} steps, "
+            f"{(count * dx - turn) * 1e3:+.3g} mm a turn"
+        )
+        length = turn
+    elif length is None:
+        length = rail_repeat_length(table.wavelengths)
+        notes.append(f"{table.name}: the line repeats every {length:.6g} m (no length given)")
+    if not (np.isfinite(length) and 16.0 * dx <= length <= _MOST_SAMPLES * dx):
+        raise ParameterError(
+            "length", length, f"the repeat length must lie between {16.0 * dx:g} m and {_MOST_SAMPLES * dx:g} m"
+        )
+    return float(length)
