@@ -1,0 +1,66 @@
+"""What every normal contact model answers."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+from numpy.typing import NDArray
+
+__all__ = ["NormalContact", "NormalSolution"]
+
+
+class NormalSolution(NamedTuple):
+    """Solution of the normal contact in one step.
+
+    Attributes
+    ----------
+    force : float
+        F_3 in N, >= 0.
+    approach : float
+        Rigid approach of the bodies, roughness not counted, in m.
+    stiffness : float
+        Tangent dF_3 / d(approach) in N/m.
+    length, width : float
+        Contact length and width in m.
+    area : float
+        m2.
+    pressure_max : float
+        Pa.
+    iterations : int
+        Evaluations of the contact law.
+    residual : float
+        Of the coupled equation, relative to its largest term.
+    """
+
+    force: float
+    approach: float
+    stiffness: float
+    length: float
+    width: float
+    area: float
+    pressure_max: float
+    iterations: int
+    residual: float
+
+
+class NormalContact(Protocol):
+    """A normal contact model, without state."""
+
+    @property
+    def nodes(self) -> int:
+        """Number of roughness nodes that the model looks at, odd, centred on the nominal contact point."""
+        ...
+
+    def solve(
+        self, roughness: NDArray, *, weight: float, compliance: float, rhs: float, guess: float
+    ) -> NormalSolution:
+        """Solve ``weight * approach + compliance * force = rhs`` over the given roughness.
+
+        Parameters
+        ----------
+        roughness : ndarray, shape (nodes,)
+            Combined roughness in m.
+        weight, compliance, rhs, guess : float
+            As `wheelrail.contact.newton.solve_approach` takes them.
+        """
+        ...

@@ -1,0 +1,192 @@
+"""From a case to its model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..case import Case
+from ..contact.bedding import WinklerBedding
+from ..contact.hertz import HertzContact, hertz_contact
+from ..contact.solution import NormalContact
+from ..contact.spring import HertzSpring, averaging_weights
+from ..errors import CaseError
+from ..excitation.prepare import prepare_source
+from ..greens.cache import cached_moving_greens
+from ..greens.ordinary import discretise, sample
+from ..track.discrete import DiscreteTrack
+from ..wheel.rigid import RigidWheel
+from .model import Model
+from .parameters import OWN_SEEDS, Parameters
+
+__all__ = ["build_model", "hertz_of", "track_of", "wheel_of"]
+
+
+def wheel_of(case: Case) -> RigidWheel | None:
+    """Wheel model of a case; None for a wheel without dynamics."""
+    wheel = case.wheel
+    if wheel.model == "rigid":
+        return None
+    suspension = {
+        "mass": wheel.mass,
+        "suspension_stiffness": wheel.suspension_stiffness,
+        "suspension_damping": wheel.suspension_damping,
+    }
+    if wheel.model == "rigid-1dof":
+        return RigidWheel.one_dof(**suspension)
+    return RigidWheel.two_dof(
+        **suspension,
+        contact_mass=wheel.contact_mass,
+        contact_stiffness=wheel.contact_stiffness,
+        contact_damping=wheel.contact_damping,
+    )
+
+
+def track_of(case: Case) -> DiscreteTrack | None:
+    """Track model of a case; None for a rigid track."""
+    track = case.track
+    if track.model == "rigid":
+        return None
+    values = track.model_dump(exclude={"model", "preset", "memory"})
+    return DiscreteTrack(**values)
+
+
+def hertz_of(case: Case) -> HertzContact:
+    """Hertz solution of a case's geometry under its preload."""
+    contact = case.contact
+    transverse = contact.wheel_transverse_radius
+    return hertz_contact(
+        curvature_x=1.0 / case.wheel.radius,
+        curvature_y=1.0 / contact.rail_radius + (0.0 if transverse is None else 1.0 / transverse),
+        youngs_modulus=contact.youngs_modulus,
+        poisson_ratio=contact.poisson_ratio,
+        load=case.load.preload,
+    )
+
+
+def build_model(case: Case, progress: Callable[[float], None] | None = None) -> Model:
+    """Precompute everything that a run of the case needs.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable, optional
+        Called with the share of the Green's functions done; not called if they come from the cache.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    WheelrailError
+        If the case asks for what its parts can't give together.
+    """
+    simulation = case.simulation
+    dt = simulation.dx / simulation.speed
+    report: dict[str, Any] = {}
+    wheel = wheel_of(case)
+    recursions = []
+    for part, name in ((wheel, "wheel"), (wheel.held() if wheel else None, "held_wheel")):
+        if part is None:
+            recursions.append(None)
+            continue
+        recursion = discretise(*part.state_space(), dt=dt)
+        recursions.append(recursion)
+        decayed = sample(recursion, dt=dt)
+        report[name] = {
+            "states": len(recursion.beta),
+            "first_sample": recursion.first,
+            # As a recursion the function is never cut; this is when it has decayed.
+            "decay_time": len(decayed.values) * dt,
+        }
+    track, functions = track_of(case), None
+    if track is not None:
+        try:
+            greens = cached_moving_greens(
+                track, speed=simulation.speed, dx=simulation.dx, memory=case.track.memory, progress=progress
+            )
+        except ValueError as error:
+            raise CaseError("track", [str(error)]) from error
+        functions = greens.values
+        report["track"] = {
+            "functions": functions.shape[0],
+            "samples": functions.shape[1],
+            "memory": functions.shape[1] * dt,
+            "horizon": greens.horizon,
+            "neglected_energy": float(greens.neglected_energy.max()),
+            "neglected_compliance": float(np.abs(greens.neglected_compliance).max()),
+            "degrees_of_freedom": track.degrees_of_freedom,
+        }
+    sources, notes = [], []
+    for entry in case.excitation:
+        keys = entry.model_dump(exclude_none=True)
+        if "file" in keys:
+            keys["file"] = case.data_path(keys["file"])
+        source, remarks = prepare_source(dx=simulation.dx, wheel_radius=case.wheel.radius, **keys)
+        sources.append(source)
+        notes += remarks
+    report["excitation"] = notes
+    parameters = Parameters(
+        speed=simulation.speed,
+        friction_coefficient=0.0 if case.friction is None else case.friction.coefficient,
+        start_position=simulation.start_position,
+        lateral_position=0.0,
+        coupling=case.load.coupling,
+        balance=True,
+        input_extrapolation="hold",
+        roughness_scale=1.0,
+        random_seed=OWN_SEEDS,
+        record=False,
+    )
+    return Model(
+        title=case.title or "",
+        case=case.to_toml(),
+        dx=simulation.dx,
+        parameters=parameters,
+        preload=case.load.preload,
+        wheel=recursions[0],
+        held_wheel=recursions[1],
+        track=functions,
+        contact=_contact_of(case),
+        sources=tuple(sources),
+        report=report,
+    ).configured()
+
+
+def _contact_of(case: Case) -> NormalContact:
+    contact, dx = case.contact, case.simulation.dx
+    hertz = hertz_of(case)
+    nodes = 1 if contact.length is None else round(contact.length / dx)
+    calibration = {
+        "load": hertz.load,
+        "semi_axis_x": hertz.semi_axis_x,
+        "semi_axis_y": hertz.semi_axis_y,
+        "approach": hertz.approach,
+        "dx": dx,
+        "nodes": nodes,
+    }
+    if contact.normal == "winkler":
+        return WinklerBedding.from_hertz(**calibration)
+    cube_root = hertz.load ** (1.0 / 3.0)
+    weights, bedding = np.zeros(nodes), None
+    weights[nodes // 2] = 1.0
+    if contact.prefilter != "none" and 0.5 * (nodes - 1) * dx < hertz.semi_axis_x:
+        raise CaseError(
+            "contact.length",
+            [f"the prefilter needs at least the nominal contact length {2e3 * hertz.semi_axis_x:.3g} mm and one dx"],
+        )
+    if contact.prefilter == "average":
+        weights = averaging_weights(half_length=hertz.semi_axis_x, dx=dx, nodes=nodes)
+    elif contact.prefilter == "winkler":
+        bedding = WinklerBedding.from_hertz(**calibration)
+    return HertzSpring(
+        constant=hertz.constant,
+        axis_constants=(hertz.semi_axis_x / cube_root, hertz.semi_axis_y / cube_root),
+        nodes=nodes,
+        weights=weights,
+        bedding=bedding,
+        preload=hertz.load,
+    )

@@ -1,0 +1,144 @@
+"""The model: everything that a run reads and never changes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact.solution import NormalContact
+from ..errors import ParameterError
+from ..greens.recursion import Recursion
+from .parameters import OWN_SEEDS, Parameters
+
+__all__ = ["Model", "Source"]
+
+_SPEED_TOLERANCE = 1e-9
+
+
+class Source(Protocol):
+    """A source of combined roughness on the grid x = i dx."""
+
+    def add_window(self, first: int, out: NDArray, /) -> None:
+        """Add r(first dx), r((first + 1) dx), ... in m to ``out``."""
+        ...
+
+    def realise(self, *, dx: float, seed_override: int | None) -> Source:
+        """Return the source with its random numbers drawn; itself if there are none."""
+        ...
+
+    def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
+        """Return a JSON-able description, and the arrays."""
+        ...
+
+
+@dataclass(frozen=True)
+class Model:
+    """Parameters and everything precomputed; shared by any number of runs.
+
+    Attributes
+    ----------
+    title, case : str
+        Title, and the whole case file with its presets resolved.
+    dx : float
+        Grid spacing in rolling direction, m.
+    parameters : Parameters
+    preload : float
+        Load on the wheel that the case gives, N.
+    wheel : Recursion or None
+        Green's function of the wheel on its suspension; None for a wheel without dynamics.
+    held_wheel : Recursion or None
+        What remains of it in coupling by displacement.
+    track : ndarray, shape (positions, samples), or None
+        Moving Green's functions of one bay; None for a rigid track.
+    contact : NormalContact
+    sources : tuple of Source
+        Excitation as the case gives it.
+    report : dict
+        JSON-able facts about how it was built, for people.
+    """
+
+    title: str
+    case: str
+    dx: float
+    parameters: Parameters
+    preload: float
+    wheel: Recursion | None
+    held_wheel: Recursion | None
+    track: NDArray | None
+    contact: NormalContact
+    sources: tuple[Source, ...]
+    report: dict[str, Any]
+
+    @property
+    def dt(self) -> float:
+        """Time step dx / v in s."""
+        return self.dx / self.parameters.speed
+
+    @cached_property
+    def start_index(self) -> int:
+        """Grid index i of the start, x = i dx."""
+        return round(self.parameters.start_position / self.dx)
+
+    @cached_property
+    def active_wheel(self) -> Recursion | None:
+        """The wheel's Green's function in the chosen coupling."""
+        return self.wheel if self.parameters.coupling == "load" else self.held_wheel
+
+    @cached_property
+    def lines(self) -> tuple[Source, ...]:
+        """Excitation with its random numbers drawn."""
+        seed = self.parameters.random_seed
+        override = None if seed == OWN_SEEDS else seed
+        return tuple(source.realise(dx=self.dx, seed_override=override) for source in self.sources)
+
+    @cached_property
+    def unit_history(self) -> NDArray:
+        """Rail displacement at the start and after, per N of a force that rolled there for ever; shape (samples,).
+
+        Sample k belongs to step k; the force acts up to step -1.
+        """
+        if self.track is None:
+            return np.zeros(1)
+        positions, samples = self.track.shape
+        history = np.zeros(samples)
+        for age in range(1, samples):
+            history[: samples - age] += self.track[(self.start_index - age) % positions, age:]
+        return history
+
+    def configured(self, **values: Any) -> Model:
+        """Return a model with some parameters changed; the precomputed parts are shared.
+
+        Parameters
+        ----------
+        **values
+            As `Parameters` names them.
+
+        Raises
+        ------
+        ParameterError
+            If a value is not allowed, or would need other Green's functions.
+        """
+        parameters = self.parameters.changed(**values)
+        built = self.parameters.speed
+        if abs(parameters.speed - built) > _SPEED_TOLERANCE * built:
+            if self.wheel is not None or self.track is not None:
+                raise ParameterError(
+                    "speed",
+                    parameters.speed,
+                    f"the Green's functions in this model are for {built!r} m/s; build one for this speed "
+                    '(set simulation.speed in the case file and run "wheelrail build")',
+                )
+        elif parameters.speed != built:
+            parameters = parameters.changed(speed=built)
+        cells = parameters.start_position / self.dx
+        if abs(cells - round(cells)) > 1e-6:
+            raise ParameterError(
+                "start_position",
+                parameters.start_position,
+                f"must be a multiple of dx = {self.dx:g} m; the nearest is {round(cells) * self.dx:g} m",
+            )
+        return replace(self, parameters=parameters)

@@ -1,0 +1,132 @@
+"""A model in one file, read with numpy alone: what an FMU carries."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact.bedding import WinklerBedding
+from ..contact.spring import HertzSpring
+from ..errors import ModelFileError
+from ..excitation.sources import source_from_parts
+from ..greens.recursion import Recursion
+from ..numerics.array_file import ArrayFileError, read_arrays, write_arrays
+from .model import Model
+from .parameters import Parameters
+
+__all__ = ["FORMAT", "load_model", "save_model"]
+
+FORMAT = 1
+
+
+def save_model(model: Model, path: str | os.PathLike[str]) -> None:
+    """Write a model; the same model gives the same bytes.
+
+    Parameters
+    ----------
+    model : Model
+    path : path-like
+        Replaced atomically.
+    """
+    arrays: dict[str, NDArray] = {}
+    header: dict[str, Any] = {
+        "format": FORMAT,
+        "title": model.title,
+        "case": model.case,
+        "dx": model.dx,
+        "parameters": model.parameters.to_dict(),
+        "preload": model.preload,
+        "report": model.report,
+    }
+    for name in ("wheel", "held_wheel"):
+        recursion: Recursion | None = getattr(model, name)
+        header[name] = None
+        if recursion is not None:
+            header[name] = {"first": recursion.first}
+            arrays |= {f"{name}.{part}": getattr(recursion, part) for part in ("phi", "beta", "c")}
+    header["track"] = model.track is not None
+    if model.track is not None:
+        arrays["track"] = model.track
+    header["contact"], contact_arrays = _contact_parts(model.contact)
+    arrays |= {f"contact.{name}": array for name, array in contact_arrays.items()}
+    header["sources"] = []
+    for number, source in enumerate(model.sources):
+        meta, parts = source.to_parts()
+        header["sources"].append({"meta": meta, "arrays": sorted(parts)})
+        arrays |= {f"source{number}.{name}": array for name, array in parts.items()}
+    write_arrays(path, header, arrays)
+
+
+def load_model(path: str | os.PathLike[str]) -> Model:
+    """Read a model.
+
+    Raises
+    ------
+    ModelFileError
+        If the file is missing, damaged or of another format.
+    """
+    try:
+        header, arrays, _ = read_arrays(path)
+    except (ArrayFileError, OSError) as error:
+        raise ModelFileError(f"the model file can't be read: {error}") from error
+    if header.get("format") != FORMAT:
+        raise ModelFileError(f"{path}: format {header.get('format')!r}, this version reads format {FORMAT}")
+    recursions = {}
+    for name in ("wheel", "held_wheel"):
+        recursions[name] = None
+        if header[name] is not None:
+            parts = {part: arrays[f"{name}.{part}"] for part in ("phi", "beta", "c")}
+            recursions[name] = Recursion(**parts, first=header[name]["first"])
+    sources = []
+    for number, entry in enumerate(header["sources"]):
+        parts = {name: arrays[f"source{number}.{name}"] for name in entry["arrays"]}
+        sources.append(source_from_parts(entry["meta"], parts))
+    return Model(
+        title=header["title"],
+        case=header["case"],
+        dx=header["dx"],
+        parameters=Parameters(**header["parameters"]),
+        preload=header["preload"],
+        wheel=recursions["wheel"],
+        held_wheel=recursions["held_wheel"],
+        track=arrays.get("track"),
+        contact=_contact_from_parts(header["contact"], arrays),
+        sources=tuple(sources),
+        report=header["report"],
+    )
+
+
+def _bedding_parts(bedding: WinklerBedding) -> dict[str, Any]:
+    return {field.name: getattr(bedding, field.name) for field in fields(bedding) if field.init}
+
+
+def _contact_parts(contact: object) -> tuple[dict[str, Any], dict[str, NDArray]]:
+    if isinstance(contact, WinklerBedding):
+        return {"kind": "winkler", **_bedding_parts(contact)}, {}
+    assert isinstance(contact, HertzSpring)
+    meta = {
+        "kind": "hertz",
+        "constant": contact.constant,
+        "axis_constants": list(contact.axis_constants),
+        "nodes": contact.nodes,
+        "preload": contact.preload,
+        "bedding": None if contact.bedding is None else _bedding_parts(contact.bedding),
+    }
+    return meta, {"weights": contact.weights}
+
+
+def _contact_from_parts(meta: dict[str, Any], arrays: dict[str, NDArray]) -> WinklerBedding | HertzSpring:
+    meta = dict(meta)
+    kind = meta.pop("kind")
+    if kind == "winkler":
+        return WinklerBedding(**meta)
+    bedding = meta.pop("bedding")
+    return HertzSpring(
+        **{**meta, "axis_constants": tuple(meta["axis_constants"])},
+        weights=np.asarray(arrays["contact.weights"]),
+        bedding=None if bedding is None else WinklerBedding(**bedding),
+    )

@@ -1,0 +1,132 @@
+"""One time step of the coupled system (Pieringer 2011, eqs. 3.5 to 3.8, 3.15 to 3.17, 3.28 to 3.32).
+
+    approach = offset + xi_W - xi_R,     xi_W = known + g_W(1) (P - F),     xi_R = known + g_R(1) F
+
+with the known parts from all past forces; the contact law closes the equation for the present force. The first samples
+are kept, so it is implicit and solved by Newton's method in the contact model.
+
+`step` is the only writer of the state after the start, and writes only once nothing can fail any more.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numpy.typing import NDArray
+
+from ..contact.solution import NormalSolution
+from ..errors import WheelrailError
+from .inputs import Inputs
+from .model import Model
+from .state import (
+    APPROACH,
+    AREA,
+    FORCE,
+    HEAD,
+    ITERATIONS,
+    LENGTH,
+    OFFSET,
+    PRESSURE,
+    RAIL,
+    RESIDUAL,
+    STEP,
+    STIFFNESS,
+    WHEEL,
+    WIDTH,
+    State,
+)
+
+__all__ = ["step"]
+
+
+def roughness_window(model: Model, state: State, index: int) -> NDArray:
+    """Combined roughness at the contact's nodes around grid index ``index``, in m; shape (nodes,)."""
+    window = state.window
+    window.fill(0.0)
+    first = index - len(window) // 2
+    for line in model.lines:
+        line.add_window(first, window)
+    if model.parameters.roughness_scale != 1.0:
+        window *= model.parameters.roughness_scale
+    return window
+
+
+def track_functions(model: Model, step: int) -> NDArray | None:
+    """Return the moving Green's function of the force in step ``step``, shape (samples,); None for a rigid track."""
+    track = model.track
+    return None if track is None else track[(model.start_index + step) % len(track)]
+
+
+def store_solution(block: NDArray, solution: NormalSolution) -> None:
+    """Put the contact's results at their place in the state."""
+    block[FORCE] = solution.force
+    block[APPROACH] = solution.approach
+    block[STIFFNESS] = solution.stiffness
+    block[LENGTH] = solution.length
+    block[WIDTH] = solution.width
+    block[AREA] = solution.area
+    block[PRESSURE] = solution.pressure_max
+    block[ITERATIONS] = solution.iterations
+    block[RESIDUAL] = solution.residual
+
+
+def step(model: Model, state: State, inputs: Inputs) -> None:
+    """Advance the state by one time step.
+
+    Parameters
+    ----------
+    model : Model
+    state : State
+        Changed in place; as it was if an error is raised.
+    inputs : Inputs
+        Valid at the end of the step.
+
+    Raises
+    ------
+    WheelrailError
+        If the excitation ends, the contact leaves its grid or the force is not finite.
+    """
+    block = state.block
+    number = int(block[STEP]) + 1
+    roughness = roughness_window(model, state, model.start_index + number)
+    functions = track_functions(model, number)
+    rail_known = rail_first = 0.0
+    if functions is not None:
+        rail_known, rail_first = float(state.future[int(block[HEAD])]), float(functions[0])
+    wheel = model.active_wheel
+    wheel_known = wheel_first = 0.0
+    if wheel is not None:
+        wheel_known, wheel_first = float(wheel.c @ state.wheel), wheel.first
+    by_load = model.parameters.coupling == "load"
+    load = inputs.wheel_force_z if by_load else 0.0
+    offset = float(block[OFFSET]) if by_load else inputs.wheel_z
+    guess = float(block[APPROACH])
+    if by_load and wheel is None:  # a wheel without dynamics: the contact force is the load
+        solution = model.contact.solve(roughness, weight=0.0, compliance=1.0, rhs=load, guess=guess)
+    else:
+        solution = model.contact.solve(
+            roughness,
+            weight=1.0,
+            compliance=wheel_first + rail_first,
+            rhs=offset + wheel_known + wheel_first * load - rail_known,
+            guess=guess,
+        )
+    force = solution.force
+    if not (math.isfinite(force) and math.isfinite(solution.approach)):
+        raise WheelrailError(
+            f"the contact force is not finite at step {number} (load {load!r} N, wheel_z {inputs.wheel_z!r} m)"
+        )
+    # Nothing fails from here on.
+    rail = rail_known + rail_first * force
+    if wheel is not None:
+        block[WHEEL] = wheel_known + wheel_first * (load - force) + (0.0 if by_load else inputs.wheel_z)
+        state.wheel[:] = wheel.phi @ state.wheel + wheel.beta * (load - force)
+    elif by_load:
+        block[WHEEL] = solution.approach + rail - offset
+    else:
+        block[WHEEL] = inputs.wheel_z
+    block[RAIL] = rail
+    store_solution(block, solution)
+    if functions is not None:
+        state.push(functions, force)
+    block[STEP] = number
