@@ -113,9 +113,7 @@ class WinklerBedding:
             return NormalSolution(0.0, approach, 0.0, 0.0, 0.0, 0.0, 0.0, iterations, residual)
         width = 2.0 * self.width_constant * force ** (1.0 / 3.0)
         area = 0.25 * math.pi * length * width
-        return NormalSolution(
-            force, approach, stiffness, length, width, area, 1.5 * force / area, iterations, residual
-        )
+        return NormalSolution(force, approach, stiffness, length, width, area, 1.5 * force / area, iterations, residual)
 
     def _refuse(self, approach: float, z: NDArray) -> None:
         covered = (self.nodes - 1) * self.dx

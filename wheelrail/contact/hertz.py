@@ -1,7 +1,7 @@
 """Hertz contact of two bodies with constant curvatures: the exact ellipse (Hertz 1882).
 
-Equations and notation: Johnson (1985), Contact Mechanics, section 4.2; they give what Pieringer (2011), eqs. 2.12 to 2.20,
-takes from tables.
+Equations and notation: Johnson (1985), Contact Mechanics, section 4.2; they give what Pieringer (2011),
+eqs. 2.12 to 2.20, takes from tables.
 """
 
 from __future__ import annotations
@@ -77,9 +77,9 @@ def hertz_contact(
     k2 = _squared_axis_ratio(sharp / flat)
     k = math.sqrt(k2)
     # A = (p0 / E*) (b / (e^2 a^2)) (K - E) with p0 = 3 P / (2 pi a b), solved for the long semi-axis a.
-    a = (1.5 * load / (math.pi * modulus) * elliprd(0.0, k2, 1.0) / (3.0 * flat)) ** (1.0 / 3.0)
+    a = (1.5 * load / (math.pi * modulus) * float(elliprd(0.0, k2, 1.0)) / (3.0 * flat)) ** (1.0 / 3.0)
     b = k * a
-    approach = 1.5 * load / (math.pi * a * modulus) * elliprf(0.0, k2, 1.0)
+    approach = 1.5 * load / (math.pi * a * modulus) * float(elliprf(0.0, k2, 1.0))
     pressure = 1.5 * load / (math.pi * a * b)
     along = curvature_x <= curvature_y
     return HertzContact(
@@ -105,4 +105,6 @@ def _squared_axis_ratio(ratio: float) -> float:
 
     if mismatch(0.0) >= 0.0:
         return 1.0
-    return math.exp(brentq(mismatch, -100.0, 0.0, xtol=1e-15, rtol=8.9e-16))
+    root = brentq(mismatch, -100.0, 0.0, xtol=1e-15)
+    assert isinstance(root, float)
+    return math.exp(root)

@@ -63,7 +63,8 @@ def solve_approach(
     largest = abs(rhs) + abs(weight * touch) + weight * _SMALLEST
     force = stiffness = residual = 0.0
     iterations = 0
-    for iterations in range(1, MAXIMUM_ITERATIONS + 1):
+    while iterations < MAXIMUM_ITERATIONS:
+        iterations += 1
         force, stiffness = law(d)
         error = weight * d + compliance * force - rhs
         residual = abs(error) / largest

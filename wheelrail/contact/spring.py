@@ -4,8 +4,8 @@ A spring has no extension, so it knows nothing of the contact filter: what rough
 
 * ``none``: the roughness at the nominal contact point.
 * ``average``: its mean over the nominal contact length.
-* ``winkler``: what a Winkler bedding under the constant preload would feel: how much higher than on a smooth surface the
-  wheel would ride (Ford and Thompson 2006).
+* ``winkler``: what a Winkler bedding under the constant preload would feel: how much higher than on a smooth surface
+  the wheel would ride (Ford and Thompson 2006).
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ def cached_moving_greens(
     memory: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> MovingGreens:
-    """Moving Green's functions from the cache, or computed and stored there.
+    """Get moving Green's functions from the cache, or compute and store them there.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def cached_moving_greens(
 
 
 def list_cache() -> list[CacheEntry]:
-    """What the cache holds, sorted by name."""
+    """List what the cache holds, sorted by name."""
     entries = []
     for path in sorted(cache_folder().glob(f"*{_SUFFIX}")):
         try:

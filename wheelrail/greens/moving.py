@@ -4,9 +4,9 @@ Sample n of the function for position x0 is the rail's displacement at x0 + (n -
 The force is taken as piecewise linear in time, as in `wheelrail.greens.ordinary`; eq. 3.14 as printed is "sampled".
 
 Length: the functions end where the energy (sum of squares) between the end and a horizon is, for every x0, at most a
-given share of the whole. The horizon is the longest time for which the moving point stays well inside the track, at most
-`LONGEST_HORIZON`. A rail without own damping keeps a weak ring at its pinned-pinned frequency for much longer than that;
-how much is neglected is reported with the result.
+given share of the whole. The horizon is the longest time for which the moving point stays well inside the track, at
+most `LONGEST_HORIZON`. A rail without own damping keeps a weak ring at its pinned-pinned frequency for much longer than
+that; how much is neglected is reported with the result.
 """
 
 from __future__ import annotations

@@ -18,14 +18,15 @@ from ..greens.cache import cached_moving_greens
 from ..greens.ordinary import discretise, sample
 from ..track.discrete import DiscreteTrack
 from ..wheel.rigid import RigidWheel
+from .inputs import Inputs
 from .model import Model
 from .parameters import OWN_SEEDS, Parameters
 
-__all__ = ["build_model", "hertz_of", "track_of", "wheel_of"]
+__all__ = ["build_model", "hertz_of", "memory_of", "track_of", "wheel_of"]
 
 
 def wheel_of(case: Case) -> RigidWheel | None:
-    """Wheel model of a case; None for a wheel without dynamics."""
+    """Make the wheel model of a case; None for a wheel without dynamics."""
     wheel = case.wheel
     if wheel.model == "rigid":
         return None
@@ -45,7 +46,7 @@ def wheel_of(case: Case) -> RigidWheel | None:
 
 
 def track_of(case: Case) -> DiscreteTrack | None:
-    """Track model of a case; None for a rigid track."""
+    """Make the track model of a case; None for a rigid track."""
     track = case.track
     if track.model == "rigid":
         return None
@@ -53,8 +54,13 @@ def track_of(case: Case) -> DiscreteTrack | None:
     return DiscreteTrack(**values)
 
 
+def memory_of(case: Case) -> float | None:
+    """Length that a case sets for the moving Green's functions in s; None where it follows from their decay."""
+    return None if case.track.model == "rigid" else case.track.memory
+
+
 def hertz_of(case: Case) -> HertzContact:
-    """Hertz solution of a case's geometry under its preload."""
+    """Solve Hertz contact of a case's geometry under its preload."""
     contact = case.contact
     transverse = contact.wheel_transverse_radius
     return hertz_contact(
@@ -106,7 +112,7 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
     if track is not None:
         try:
             greens = cached_moving_greens(
-                track, speed=simulation.speed, dx=simulation.dx, memory=case.track.memory, progress=progress
+                track, speed=simulation.speed, dx=simulation.dx, memory=memory_of(case), progress=progress
             )
         except ValueError as error:
             raise CaseError("track", [str(error)]) from error
@@ -146,7 +152,7 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
         case=case.to_toml(),
         dx=simulation.dx,
         parameters=parameters,
-        preload=case.load.preload,
+        start_inputs=_start_inputs(case),
         wheel=recursions[0],
         held_wheel=recursions[1],
         track=functions,
@@ -154,6 +160,17 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
         sources=tuple(sources),
         report=report,
     ).configured()
+
+
+def _start_inputs(case: Case) -> Inputs:
+    creepage = case.creepage
+    return Inputs(
+        creepage_x=0.0 if creepage is None else creepage.x,
+        creepage_y=0.0 if creepage is None else creepage.y,
+        creepage_spin=0.0 if creepage is None else creepage.spin,
+        wheel_force_z=case.load.preload,
+        lateral_shift=case.contact.lateral_shift,
+    )
 
 
 def _contact_of(case: Case) -> NormalContact:

@@ -1,8 +1,8 @@
 """A run in communication steps of any length, as a co-simulation master drives it.
 
-The clock is the run's own: it adds up the communication steps with compensated summation, so that it does not drift, and
-an instant within 1e-6 dt of a communication point counts as reached. Internal steps depend on nothing but their number
-and the inputs, so the result for constant inputs does not depend on how the time was cut.
+The clock is the run's own: it adds up the communication steps with compensated summation, so that it does not drift,
+and an instant within 1e-6 dt of a communication point counts as reached. Internal steps depend on nothing but their
+number and the inputs, so the result for constant inputs does not depend on how the time was cut.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class CoSimulation:
     def reset(self) -> None:
         """Go back to the state after construction."""
         self.model = self._base
-        self._inputs = Inputs(wheel_force_z=self.model.preload)
+        self._inputs = self.model.start_inputs
         self._state: State | None = None
         self._stale = True
         self._backup = np.empty(0)
@@ -192,6 +192,8 @@ class CoSimulation:
         elapsed, lost = _add(self._elapsed, self._lost, step_size)
         target = math.floor((elapsed - lost) / model.dt + REACHED)
         done = max(target - state.step, 0)
+        if self.recorder is not None and not self._advanced:
+            self.recorder(0.0, 0.0, 0.0, float(state.block[FORCE]))
         if done:
             self._run(state, done)
         if elapsed > self._elapsed:
@@ -206,8 +208,6 @@ class CoSimulation:
         if self._backup.shape != block.shape:
             self._backup = np.empty_like(block)
         np.copyto(self._backup, block)
-        if recorder is not None and not self._advanced:
-            recorder(0.0, 0.0, 0.0, float(block[FORCE]))
         inputs, extrapolate = self._inputs, self._slopes()
         total, largest, smallest, iterations, residual = 0.0, -math.inf, math.inf, 0, 0.0
         rows = []
@@ -273,7 +273,7 @@ class CoSimulation:
         if name == "in_contact":
             return bool(state.block[FORCE] > 0.0)
         if name == "distance":
-            return state.step * self.model.dx
+            return self.model.parameters.speed * self._elapsed
         if name in _ZERO:
             return 0.0
         raise ParameterError(name, "?", f"no such output; there are: {', '.join(OUTPUT_NAMES)}")
@@ -292,7 +292,7 @@ class CoSimulation:
             "results": [self._mean, self._largest, self._smallest, self._iterations, self._residual],
         }
         text = json.dumps(header, sort_keys=True).encode()
-        return _MAGIC + self._fingerprint() + struct.pack("<Q", len(text)) + text + state.to_bytes()
+        return _MAGIC + self._base.fingerprint + struct.pack("<Q", len(text)) + text + state.to_bytes()
 
     def load(self, data: bytes) -> None:
         """Continue from `save`, bit for bit.
@@ -305,7 +305,7 @@ class CoSimulation:
         start_of_text = len(_MAGIC) + _FINGERPRINT_BYTES + 8
         if len(data) < start_of_text or data[: len(_MAGIC)] != _MAGIC:
             raise StateError("the saved state is damaged: it does not begin as one")
-        if data[len(_MAGIC) : len(_MAGIC) + _FINGERPRINT_BYTES] != self._fingerprint():
+        if data[len(_MAGIC) : len(_MAGIC) + _FINGERPRINT_BYTES] != self._base.fingerprint:
             raise StateError("the saved state belongs to another model")
         (length,) = struct.unpack("<Q", data[start_of_text - 8 : start_of_text])
         try:
@@ -323,12 +323,6 @@ class CoSimulation:
         self._elapsed, self._lost, self._advanced = header["elapsed"], header["lost"], header["advanced"]
         self._mean, self._largest, self._smallest = mean, largest, smallest
         self._iterations, self._residual = iterations, residual
-
-    def _fingerprint(self) -> bytes:
-        """Short hash of the model apart from its parameters."""
-        base = self._base
-        text = f"{base.case}|{base.dx!r}|{None if base.track is None else base.track.shape}"
-        return hashlib.blake2b(text.encode(), digest_size=_FINGERPRINT_BYTES).digest()
 
     def digest(self) -> str:
         """Hash of `save`: equal runs have equal digests."""

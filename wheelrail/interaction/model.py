@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 from ..contact.solution import NormalContact
 from ..errors import ParameterError
 from ..greens.recursion import Recursion
+from .inputs import Inputs
 from .parameters import OWN_SEEDS, Parameters
 
 __all__ = ["Model", "Source"]
@@ -46,8 +49,8 @@ class Model:
     dx : float
         Grid spacing in rolling direction, m.
     parameters : Parameters
-    preload : float
-        Load on the wheel that the case gives, N.
+    start_inputs : Inputs
+        What the case gives for the vehicle's inputs: the preload, creepages, lateral shift.
     wheel : Recursion or None
         Green's function of the wheel on its suspension; None for a wheel without dynamics.
     held_wheel : Recursion or None
@@ -65,7 +68,7 @@ class Model:
     case: str
     dx: float
     parameters: Parameters
-    preload: float
+    start_inputs: Inputs
     wheel: Recursion | None
     held_wheel: Recursion | None
     track: NDArray | None
@@ -108,6 +111,24 @@ class Model:
         for age in range(1, samples):
             history[: samples - age] += self.track[(self.start_index - age) % positions, age:]
         return history
+
+    @cached_property
+    def fingerprint(self) -> bytes:
+        """Hash of all that shapes a run apart from the parameters; 16 bytes."""
+        digest = hashlib.blake2b(repr((self.dx, self.contact, self.start_inputs)).encode(), digest_size=16)
+        for recursion in (self.wheel, self.held_wheel):
+            if recursion is not None:
+                for part in (recursion.phi, recursion.beta, recursion.c, np.array(recursion.first)):
+                    digest.update(np.ascontiguousarray(part).data)
+        if self.track is not None:
+            digest.update(repr(self.track.shape).encode())
+            digest.update(np.ascontiguousarray(self.track).data)
+        for source in self.sources:
+            meta, arrays = source.to_parts()
+            digest.update(json.dumps(meta, sort_keys=True).encode())
+            for name in sorted(arrays):
+                digest.update(name.encode() + np.ascontiguousarray(arrays[name]).tobytes())
+        return digest.digest()
 
     def configured(self, **values: Any) -> Model:
         """Return a model with some parameters changed; the precomputed parts are shared.

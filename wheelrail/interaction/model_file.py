@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import fields
+from dataclasses import asdict, fields
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..errors import ModelFileError
 from ..excitation.sources import source_from_parts
 from ..greens.recursion import Recursion
 from ..numerics.array_file import ArrayFileError, read_arrays, write_arrays
+from .inputs import Inputs
 from .model import Model
 from .parameters import Parameters
 
@@ -39,7 +40,7 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
         "case": model.case,
         "dx": model.dx,
         "parameters": model.parameters.to_dict(),
-        "preload": model.preload,
+        "start_inputs": asdict(model.start_inputs),
         "report": model.report,
     }
     for name in ("wheel", "held_wheel"):
@@ -90,7 +91,7 @@ def load_model(path: str | os.PathLike[str]) -> Model:
         case=header["case"],
         dx=header["dx"],
         parameters=Parameters(**header["parameters"]),
-        preload=header["preload"],
+        start_inputs=Inputs(**header["start_inputs"]),
         wheel=recursions["wheel"],
         held_wheel=recursions["held_wheel"],
         track=arrays.get("track"),

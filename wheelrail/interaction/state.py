@@ -54,7 +54,7 @@ class State:
         if block is None:
             block = np.zeros(size)
         elif block.shape != (size,):
-            raise StateError(f"the state has {block.size} numbers, this model needs {size}: it belongs to another model")
+            raise StateError(f"the state has {block.size} numbers, not the {size} of this model: it is another model's")
         self.block = block
         self.wheel = block[SCALARS : SCALARS + wheel]
         self.future = block[SCALARS + wheel :]

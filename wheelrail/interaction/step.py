@@ -40,7 +40,7 @@ __all__ = ["step"]
 
 
 def roughness_window(model: Model, state: State, index: int) -> NDArray:
-    """Combined roughness at the contact's nodes around grid index ``index``, in m; shape (nodes,)."""
+    """Evaluate the combined roughness at the contact's nodes around ``index``, in m; shape (nodes,)."""
     window = state.window
     window.fill(0.0)
     first = index - len(window) // 2

@@ -71,7 +71,7 @@ def _assemble(track: DiscreteTrack, cells: int, *, clamped_start: bool) -> _Cell
 
 
 def _system_matrix(cells: _Cells, dt: float) -> NDArray:
-    """A dt for states (u, v dt): so scaled, displacements and velocities have like size, as expm needs to be accurate."""
+    """Return A dt for states (u, v dt): so scaled, they have like size, as expm needs to be accurate."""
     size = len(cells.mass)
     factor = cho_factor(cells.mass)
     return np.block(

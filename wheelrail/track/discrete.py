@@ -118,7 +118,7 @@ class DiscreteTrack:
         return bands[0], bands[1]
 
     def support_columns(self) -> NDArray:
-        """Indices of the supported deflections among the rail's free degrees of freedom, shape (bays - 1,)."""
+        """Return the indices of supported deflections among the rail's free degrees of freedom; (bays - 1,)."""
         return 2 * (np.arange(1, self.bays) * self.elements_per_bay - 1)
 
     def support_stiffness(self, frequency: ArrayLike) -> NDArray:
@@ -227,9 +227,9 @@ class DiscreteTrack:
         return result
 
     def static_compliance(self, x0: float, x: ArrayLike) -> NDArray:
-        """Static deflection at ``x`` per force at ``x0`` in m/N, shape (n,)."""
+        """Return the static deflection at ``x`` per force at ``x0`` in m/N, shape (n,)."""
         stiffness, _ = self.rail_bands()
-        stiffness[0, self.support_columns()] += self.support_stiffness(0.0).real
+        stiffness[0, self.support_columns()] += np.real(self.support_stiffness(0.0))
         source, source_weight = self.interpolation(x0)
         force = np.zeros(stiffness.shape[1])
         inside = source_weight[0] != 0.0

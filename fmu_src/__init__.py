@@ -1,0 +1,1 @@
+"""The FMU round the model: variable table, slave, packing; no physics."""

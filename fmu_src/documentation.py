@@ -1,0 +1,80 @@
+"""``documentation/index.html`` of the FMU, from the variable table and the case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+from importlib import resources
+from string import Template
+from typing import Any
+
+from .variables import ENUMERATIONS, VARIABLES, Variable
+
+__all__ = ["documentation"]
+
+
+def documentation(*, start: Mapping[str, Any], case_text: str, title: str, version: str, step_size: float) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    start : mapping of str to object
+        Start values by variable name.
+    case_text : str
+        The case file that the FMU was built from.
+    title, version : str
+        Title of the case and version of the package.
+    step_size : float
+        Communication step of the default experiment (s).
+
+    Returns
+    -------
+    str
+        HTML without references to anything outside, but for the licences beside it.
+    """
+    page = Template(resources.files("fmu_src").joinpath("documentation_template.html").read_text(encoding="utf-8"))
+    return page.substitute(
+        title=escape(title),
+        version=escape(version),
+        speed=f"{start['speed']:g}",
+        dx=f"{1e3 * start['dx']:g}",
+        time_step=f"{1e6 * start['dx'] / start['speed']:.4g}",
+        step_size=f"{1e3 * step_size:g}",
+        wheel_model=escape(str(start["wheel_model"])),
+        track_model=escape(str(start["track_model"])),
+        normal_contact_model=escape(str(start["normal_contact_model"])),
+        tangential_contact_model=escape(str(start["tangential_contact_model"])),
+        coupling=escape(str(start["coupling"])),
+        inputs=_table("input", start),
+        outputs=_table("output", start),
+        parameters=_table("parameter", start),
+        calculated=_table("calculated", start),
+        constants=_table("constant", start),
+        case_text=escape(case_text),
+    )
+
+
+def _table(role: str, start: Mapping[str, Any]) -> str:
+    rows = [
+        _row(reference, variable, start.get(variable.name))
+        for reference, variable in enumerate(VARIABLES)
+        if variable.role == role
+    ]
+    head = "<tr><th>reference</th><th>name</th><th>type</th><th>unit</th><th>meaning</th>"
+    head += (
+        "</tr>" if role in ("output", "calculated") else f"<th>{'value' if role == 'constant' else 'start'}</th></tr>"
+    )
+    return "<table>\n" + "\n".join([head, *rows]) + "\n</table>"
+
+
+def _row(reference: int, variable: Variable, start: Any) -> str:
+    meaning = escape(variable.description)
+    if variable.enumeration:
+        items = ENUMERATIONS[variable.enumeration].items
+        meaning += "".join(
+            f"<br>{value} = <code>{name}</code>: {escape(text)}" for value, (name, text) in enumerate(items, 1)
+        )
+    cells = [str(reference), f"<code>{variable.name}</code>", variable.kind, variable.unit or "", meaning]
+    if variable.role not in ("output", "calculated"):
+        cells.append(escape(f"{start:g}" if isinstance(start, float) else str(start)))
+    return "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
