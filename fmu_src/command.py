@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from wheelrail.case import default_case_text, load_case, parse_case
 from wheelrail.errors import WheelrailError
+from wheelrail.progress import progress_bar
 
 from .build import build_fmu, describe_fmu
 from .errors import SlaveError
@@ -34,7 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         case = load_case(options.case) if options.case else parse_case(default_case_text(), source="default case")
-        built = describe_fmu(build_fmu(case, options.output))
+        with progress_bar("moving Green's functions") as reached:
+            path = build_fmu(case, options.output, reached)
+        built = describe_fmu(path)
     except (WheelrailError, SlaveError) as error:
         print(f"error: {error}", file=sys.stderr)  # noqa: T201
         return 2

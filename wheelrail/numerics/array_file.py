@@ -1,7 +1,7 @@
 """One file for a set of named arrays with a JSON header: deterministic, checked, read with numpy alone.
 
-Layout: magic (8 bytes), length of the JSON header (8 bytes, little endian), BLAKE2b digest of all that follows
-(32 bytes), the header, then the arrays, each starting at a multiple of 64 bytes.
+Layout: magic (8 bytes), BLAKE2b digest of all that follows (32 bytes), length of the JSON header (8 bytes, little
+endian), the header, then the arrays, each starting at a multiple of 64 bytes.
 """
 
 from __future__ import annotations
@@ -48,17 +48,17 @@ def write_arrays(path: str | os.PathLike[str], header: Mapping[str, Any], arrays
         offset += -(-array.nbytes // _ALIGN) * _ALIGN
     text = json.dumps({"header": dict(header), "arrays": table}, sort_keys=True, ensure_ascii=True).encode()
     text += b" " * (-(len(_MAGIC) + 8 + _DIGEST + len(text)) % _ALIGN)
-    digest = hashlib.blake2b(text, digest_size=_DIGEST)
-    pieces: list[Any] = [text]
+    pieces: list[Any] = [len(text).to_bytes(8, "little"), text]
     for array in payload:
         pieces += [memoryview(array.reshape(-1).view(np.uint8)), b"\0" * (-array.nbytes % _ALIGN)]
-    for piece in pieces[1:]:
+    digest = hashlib.blake2b(digest_size=_DIGEST)
+    for piece in pieces:
         digest.update(piece)
     target = Path(path)
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
     try:
         with os.fdopen(handle, "wb") as file:
-            file.write(_MAGIC + len(text).to_bytes(8, "little") + digest.digest())
+            file.write(_MAGIC + digest.digest())
             for piece in pieces:
                 file.write(piece)
         os.chmod(temporary, 0o644)
@@ -87,13 +87,13 @@ def read_arrays(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str,
         If it can't be read.
     """
     data = Path(path).read_bytes()
-    start = len(_MAGIC) + 8 + _DIGEST
+    start = len(_MAGIC) + _DIGEST + 8
     if len(data) < start or data[: len(_MAGIC)] != _MAGIC:
         raise ArrayFileError(f"{path}: not a wheelrail array file")
-    length = int.from_bytes(data[len(_MAGIC) : len(_MAGIC) + 8], "little")
-    digest = hashlib.blake2b(memoryview(data)[start:], digest_size=_DIGEST).digest()
-    if digest != data[start - _DIGEST : start] or start + length > len(data):
+    digest = hashlib.blake2b(memoryview(data)[start - 8 :], digest_size=_DIGEST).digest()
+    if digest != data[len(_MAGIC) : start - 8]:
         raise ArrayFileError(f"{path}: damaged (checksum differs)")
+    length = int.from_bytes(data[start - 8 : start], "little")
     content = json.loads(data[start : start + length])
     arrays = {}
     for name, entry in content["arrays"].items():
