@@ -20,9 +20,9 @@ import platformdirs
 from ..numerics.array_file import ArrayFileError, read_arrays, write_arrays
 from .moving import ENERGY_TOLERANCE, LONGEST_HORIZON, MARGIN_BAYS, MovingGreens, PeriodicTrack, compute_moving_greens
 
-__all__ = ["CacheEntry", "cache_folder", "cached_moving_greens", "clear_cache", "list_cache"]
+__all__ = ["CacheEntry", "cache_folder", "cached_moving_greens", "clear_cache", "find_cached", "list_cache"]
 
-ALGORITHM = 1  # raised whenever the same input gives other numbers
+ALGORITHM = 2  # raised whenever the same input gives other numbers
 _SUFFIX = ".greens"
 _log = logging.getLogger(__name__)
 
@@ -66,6 +66,30 @@ def _key(track: PeriodicTrack, settings: dict[str, Any]) -> tuple[str, dict[str,
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest(), content
 
 
+def find_cached(track: PeriodicTrack, *, speed: float, dx: float, memory: float | None = None) -> MovingGreens | None:
+    """Look up moving Green's functions in the cache, without computing anything.
+
+    Parameters
+    ----------
+    track, speed, dx, memory
+        As `cached_moving_greens` takes them.
+
+    Returns
+    -------
+    MovingGreens or None
+        None also for a damaged file, after a warning.
+    """
+    key, _ = _key(track, {"speed": speed, "dx": dx, "memory": memory})
+    try:
+        header, arrays, _ = read_arrays(cache_folder() / f"{key}{_SUFFIX}")
+        return MovingGreens(**arrays, **header["scalars"])
+    except FileNotFoundError:
+        return None
+    except (ArrayFileError, OSError, ValueError, KeyError, TypeError) as error:
+        _log.warning("cached Green's functions are not used and computed anew: %s", error)
+        return None
+
+
 def cached_moving_greens(
     track: PeriodicTrack,
     *,
@@ -87,15 +111,11 @@ def cached_moving_greens(
     -------
     MovingGreens
     """
+    found = find_cached(track, speed=speed, dx=dx, memory=memory)
+    if found is not None:
+        return found
     key, content = _key(track, {"speed": speed, "dx": dx, "memory": memory})
     path = cache_folder() / f"{key}{_SUFFIX}"
-    try:
-        header, arrays, _ = read_arrays(path)
-        return MovingGreens(**arrays, **header["scalars"])
-    except FileNotFoundError:
-        pass
-    except (ArrayFileError, OSError, ValueError, KeyError, TypeError) as error:
-        _log.warning("cached Green's functions are not used and computed anew: %s", error)
     greens = compute_moving_greens(track, speed=speed, dx=dx, memory=memory, progress=progress)
     scalars = {"dx": greens.dx, "dt": greens.dt, "horizon": greens.horizon}
     arrays = {

@@ -55,6 +55,8 @@ class PeriodicTrack(Protocol):
 
     def bay_shape_functions(self, positions: int, /) -> NDArray: ...  # noqa: D102
 
+    def bay_local_compliance(self, positions: int, /) -> NDArray: ...  # noqa: D102
+
 
 @dataclass(frozen=True)
 class MovingGreens:
@@ -150,6 +152,8 @@ def compute_moving_greens(
         np.einsum("ij,ij->i", response, shapes, out=chunk[line])
         if n == 0 and discretisation == "sampled":
             chunk[0] *= 0.5
+        if n == 0:  # only the present force has a local deflection
+            chunk[0] += track.bay_local_compliance(positions)
         if line == _CHUNK - 1 or n == samples - 1:
             values[:, n - line : n + 1] = chunk[: line + 1].T
             if progress:

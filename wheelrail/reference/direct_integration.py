@@ -99,7 +99,14 @@ class _NewmarkTrack:
         both = cho_solve_banded((self.factor, True), np.stack([rhs, self.unit_force(x)], axis=1), check_finite=False)
         self._free, self._unit = both[:, 0], both[:, 1]
         rows, weights = self.point(x)
-        return float(weights @ self._free[rows]), float(weights @ self._unit[rows])
+        return float(weights @ self._free[rows]), float(weights @ self._unit[rows]) + self.local(x)
+
+    def local(self, x: float) -> float:
+        """Static deflection per unit force that the nodes don't show, m/N."""
+        track = self.track
+        s = (x + track.half_length) / track.element_length
+        s -= int(s)
+        return _clamped_compliance(s, track.element_length, track.bending_stiffness, track.shear_stiffness)
 
     def accept(self, force: float) -> None:
         new = self._free + force * self._unit
@@ -116,6 +123,24 @@ def _multiply(bands: NDArray, vector: NDArray) -> NDArray:
         result[d:] += bands[d, :-d] * vector[:-d]
         result[:-d] += bands[d, :-d] * vector[d:]
     return result
+
+
+def _clamped_compliance(s: float, length: float, bending_stiffness: float, shear_stiffness: float) -> float:
+    """Deflection under a unit force at ``s * length`` of a beam clamped at both ends, in m/N.
+
+    Force method: the fixed end's reaction R and moment M minimise the complementary energy of bending and shear.
+    """
+    a = s * length
+    b = length - a
+    # With z from the left end: V = R - [z > a], m = M + R z - (z - a)+; flexibilities of (R, M) and of the load.
+    f_rr = length**3 / (3.0 * bending_stiffness) + length / shear_stiffness
+    f_rm = length**2 / (2.0 * bending_stiffness)
+    f_mm = length / bending_stiffness
+    load_r = -(b**2 * (2.0 * length + a) / 6.0) / bending_stiffness - b / shear_stiffness
+    load_m = -(b**2) / (2.0 * bending_stiffness)
+    load = b**3 / (3.0 * bending_stiffness) + b / shear_stiffness
+    reaction, moment = np.linalg.solve([[f_rr, f_rm], [f_rm, f_mm]], [-load_r, -load_m])
+    return float(load + load_r * reaction + load_m * moment)
 
 
 def integrate_moving_force(
@@ -200,7 +225,7 @@ def integrate_interaction(
     force, wheel_displacement, rail_displacement = (np.zeros(steps + 1) for _ in range(3))
     force[0] = preload
     rows, weights = system.point(start)
-    rail_displacement[0] = weights @ system.u[rows]
+    rail_displacement[0] = weights @ system.u[rows] + preload * system.local(start)
     # The wheel's displacement counts from its equilibrium under the preload.
     offset = (preload / hertz_constant) ** (2.0 / 3.0) + rail_displacement[0] - roughness(start)
     approach = (preload / hertz_constant) ** (2.0 / 3.0)

@@ -1,8 +1,10 @@
 """The two-node Rayleigh-Timoshenko beam element with shear-dependent cubic shape functions.
 
 Degrees of freedom per element: (w1, theta1, w2, theta2), deflection w positive down (z'), theta = dw/dx - gamma the
-rotation of the cross-section. The shape functions solve the static beam equations exactly, so point forces inside an
-element act through them and static deflections at the nodes are exact.
+rotation of the cross-section. The shape functions solve the static beam equations without load exactly, so point forces
+inside an element act through them and static deflections at the nodes are exact. Under the force itself the element
+bends more than its nodes tell; `local_compliance` is what is missing. Left out, a rolling force would find the rail
+stiffer in every element's middle (1 % with 8 elements per bay) and be excited at the element passing frequency.
 
 Sources: Przemieniecki (1968), Theory of Matrix Structural Analysis, sections 5.6 and 11.5; Nielsen and Igeland (1995).
 """
@@ -12,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["element_matrices", "shape_functions"]
+__all__ = ["element_matrices", "local_compliance", "shape_functions", "shear_parameter"]
 
 
 def shear_parameter(*, length: float, bending_stiffness: float, shear_stiffness: float) -> float:
@@ -106,3 +108,47 @@ def element_matrices(
     mass = 0.5 * L * np.einsum("g,gi,gj->ij", weights, mass_per_length * deflection, deflection)
     mass += 0.5 * L * np.einsum("g,gi,gj->ij", weights, rotary_inertia * rotation, rotation)
     return stiffness, mass
+
+
+def local_compliance(
+    s0: ArrayLike, s: ArrayLike, *, length: float, bending_stiffness: float, shear_stiffness: float
+) -> NDArray:
+    """Static deflection inside an element with clamped ends, under a unit force inside it.
+
+    Parameters
+    ----------
+    s0, s : array_like
+        Positions of force and response in the element divided by its length, 0 to 1; broadcast against each other.
+    length : float
+        Element length in m.
+    bending_stiffness, shear_stiffness : float
+        EI in N m2 and kGA in N.
+
+    Returns
+    -------
+    ndarray
+        m/N; symmetric in force and response, 0 at the ends.
+    """
+    s0, s = np.broadcast_arrays(np.asarray(s0, dtype=float), np.asarray(s, dtype=float))
+    # The smaller distance from an end decides which part the response is in; by reciprocity it may always be the left.
+    force, response = np.maximum(s0, s), np.minimum(s0, s)
+    inside = (force > 0.0) & (force < 1.0) & (response > 0.0)
+    force = np.where(inside, force, 0.5)
+    left, right = force * length, (1.0 - force) * length
+    # Two elements joined under the force: exact, since both carry no load between their ends.
+    phi_left, phi_right = (
+        shear_parameter(length=part, bending_stiffness=bending_stiffness, shear_stiffness=shear_stiffness)  # type: ignore[arg-type]
+        for part in (left, right)
+    )
+    stiff_left = bending_stiffness / (left**3 * (1.0 + phi_left))
+    stiff_right = bending_stiffness / (right**3 * (1.0 + phi_right))
+    k_ww = 12.0 * (stiff_left + stiff_right)
+    k_wt = 6.0 * (right * stiff_right - left * stiff_left)
+    k_tt = (4.0 + phi_left) * left**2 * stiff_left + (4.0 + phi_right) * right**2 * stiff_right
+    determinant = k_ww * k_tt - k_wt**2
+    deflection, rotation = k_tt / determinant, -k_wt / determinant
+    t = np.where(inside, response / force, 0.0)
+    scale = 1.0 / (1.0 + phi_left)
+    shape_w = scale * (3.0 * t**2 - 2.0 * t**3 + phi_left * t)
+    shape_t = scale * left * (-(t**2) + t**3 - 0.5 * phi_left * (t - t**2))
+    return np.where(inside, shape_w * deflection + shape_t * rotation, 0.0)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_banded, solveh_banded
 
-from .beam import element_matrices, shape_functions, shear_parameter
+from .beam import element_matrices, local_compliance, shape_functions, shear_parameter
 from .chain import ChainStepper
 
 __all__ = ["DiscreteTrack"]
@@ -167,6 +167,38 @@ class DiscreteTrack:
         free = (columns >= 0) & (columns < 2 * (self.nodes - 2))
         return columns, np.where(free, weights, 0.0)
 
+    def _local_compliance(self, x0: float, x: ArrayLike) -> NDArray:
+        """Static deflection at ``x`` that the nodes don't show, 0 outside the element of ``x0``; m/N, shape (n,)."""
+        along = (np.concatenate([[x0], np.atleast_1d(x)]) + self.half_length) / self.element_length
+        element = np.minimum(along.astype(int), self.nodes - 2)
+        inside = along - element
+        local = local_compliance(
+            inside[0],
+            inside[1:],
+            length=self.element_length,
+            bending_stiffness=self.bending_stiffness,
+            shear_stiffness=self.shear_stiffness,
+        )
+        return np.where(element[1:] == element[0], local, 0.0)
+
+    def bay_local_compliance(self, positions: int) -> NDArray:
+        """Return the deflection under a force that the nodes don't show, at the points of `bay_shape_functions`.
+
+        Returns
+        -------
+        ndarray, shape (positions,)
+            m/N; quasi-static, since the element's own resonances lie far above the frequencies of interest.
+        """
+        along = np.arange(positions) * (self.elements_per_bay / positions)
+        inside = along - along.astype(int)
+        return local_compliance(
+            inside,
+            inside,
+            length=self.element_length,
+            bending_stiffness=self.bending_stiffness,
+            shear_stiffness=self.shear_stiffness,
+        )
+
     def bay_shape_functions(self, positions: int) -> NDArray:
         """Shape functions at equidistant points of one bay, from its sleeper on, the next sleeper not included.
 
@@ -224,7 +256,7 @@ class DiscreteTrack:
             band[HALF_BANDWIDTH, at_supports] += support
             response = solve_banded((HALF_BANDWIDTH, HALF_BANDWIDTH), band, force, check_finite=False)
             result[line] = np.einsum("ij,ij->i", weights, response[columns])
-        return result
+        return result + self._local_compliance(x0, x)
 
     def static_compliance(self, x0: float, x: ArrayLike) -> NDArray:
         """Return the static deflection at ``x`` per force at ``x0`` in m/N, shape (n,)."""
@@ -236,4 +268,5 @@ class DiscreteTrack:
         force[source[0, inside]] = source_weight[0, inside]
         deflection = solveh_banded(stiffness, force, lower=True)
         columns, weights = self.interpolation(x)
-        return np.einsum("ij,ij->i", weights, deflection[np.where(weights != 0.0, columns, 0)])
+        nodal = np.einsum("ij,ij->i", weights, deflection[np.where(weights != 0.0, columns, 0)])
+        return nodal + self._local_compliance(x0, x)
