@@ -53,7 +53,7 @@ def run(fmu_path, case, reached):
     fmu = FMU2Slave(
         guid=description.guid,
         unzipDirectory=extract(fmu_path),
-        modelIdentifier=description.coSimulation.modelIdentifier,
+        modelIdentifier=description.modelName,
         instanceName="wheel",
     )
     fmu.instantiate()
@@ -104,7 +104,7 @@ def draw(columns, path):
 
 def main():
     """Build, run, summarise, draw."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description="quarter vehicle on the default FMU")
     parser.add_argument("--output", type=Path, default=Path("output"), help="folder for the FMU and the picture")
     folder = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
@@ -126,7 +126,9 @@ def main():
     print(f"FMU                    {fmu}")
     print(f"simulated              {time[-1]:g} s at {3.6 * case.simulation.speed:.0f} km/h, {len(time)} steps of 1 ms")
     print(f"load on the wheel      {load.min() / 1e3:.1f} ... {load.max() / 1e3:.1f} kN")
-    print(f"contact force          {low.min() / 1e3:.1f} ... {high.max() / 1e3:.1f} kN, mean {mean.mean() / 1e3:.2f} kN")
+    print(
+        f"contact force          {low.min() / 1e3:.1f} ... {high.max() / 1e3:.1f} kN, mean {mean.mean() / 1e3:.2f} kN"
+    )
     print(f"bogie                  {1e3 * bogie.min():.2f} ... {1e3 * bogie.max():.2f} mm")
     print(f"wheel, FMU - vehicle   {1e6 * deviation:.1f} um at most, of {1e3 * np.ptp(fmu_wheel):.2f} mm")
     print(f"picture                {folder / 'quarter_vehicle.png'}")

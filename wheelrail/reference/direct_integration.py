@@ -102,7 +102,7 @@ class _NewmarkTrack:
         return float(weights @ self._free[rows]), float(weights @ self._unit[rows]) + self.local(x)
 
     def local(self, x: float) -> float:
-        """Static deflection per unit force that the nodes don't show, m/N."""
+        """Return the static deflection per unit force that the nodes don't show, m/N."""
         track = self.track
         s = (x + track.half_length) / track.element_length
         s -= int(s)

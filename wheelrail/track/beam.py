@@ -113,7 +113,7 @@ def element_matrices(
 def local_compliance(
     s0: ArrayLike, s: ArrayLike, *, length: float, bending_stiffness: float, shear_stiffness: float
 ) -> NDArray:
-    """Static deflection inside an element with clamped ends, under a unit force inside it.
+    """Compute the static deflection inside an element with clamped ends, under a unit force inside it.
 
     Parameters
     ----------

@@ -168,7 +168,7 @@ class DiscreteTrack:
         return columns, np.where(free, weights, 0.0)
 
     def _local_compliance(self, x0: float, x: ArrayLike) -> NDArray:
-        """Static deflection at ``x`` that the nodes don't show, 0 outside the element of ``x0``; m/N, shape (n,)."""
+        """Return the static deflection at ``x`` that the nodes don't show; m/N, 0 outside the element of ``x0``."""
         along = (np.concatenate([[x0], np.atleast_1d(x)]) + self.half_length) / self.element_length
         element = np.minimum(along.astype(int), self.nodes - 2)
         inside = along - element
