@@ -15,7 +15,9 @@ leaves the contact; here force and stiffness are continuous, and a smooth surfac
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,6 +70,16 @@ class WinklerBedding:
             nodes=nodes,
             width_constant=semi_axis_y / load ** (1.0 / 3.0),
         )
+
+    def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
+        """Return a JSON-able description, and no arrays."""
+        return {"kind": "winkler", **{f.name: getattr(self, f.name) for f in fields(self) if f.init}}, {}
+
+    @classmethod
+    def from_parts(cls, meta: Mapping[str, Any], arrays: Mapping[str, NDArray]) -> WinklerBedding:
+        """Rebuild it from `to_parts`."""
+        del arrays
+        return cls(**{name: value for name, value in meta.items() if name != "kind"})
 
     def solve(
         self, roughness: NDArray, *, weight: float, compliance: float, rhs: float, guess: float

@@ -77,9 +77,9 @@ def solve_approach(
         slope = weight + compliance * stiffness
         trial = d - error / slope if slope > 0.0 else low
         # Newton stays inside the bracket except far from the solution; then the interval is halved (or opened).
-        if not low < trial < high:
+        if not low < trial <= high:
             trial = 0.5 * (low + high) if high < float("inf") else low + 2.0 * (low - touch) + scale
-            if trial in (low, high):  # the bracket has shrunk to neighbouring numbers: rounding is all that is left
-                break
+        if trial in (d, low):  # the bracket has shrunk to neighbouring numbers: rounding is all that is left
+            break
         d = trial
     return d, force, stiffness, iterations, residual

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from numpy.typing import NDArray
 
@@ -49,6 +49,10 @@ class NormalContact(Protocol):
     @property
     def nodes(self) -> int:
         """Number of roughness nodes that the model looks at, odd, centred on the nominal contact point."""
+        ...
+
+    def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
+        """Return a JSON-able description with its ``kind``, and the arrays, for a file."""
         ...
 
     def solve(

@@ -11,8 +11,9 @@ A spring has no extension, so it knows nothing of the contact filter: what rough
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,6 +82,30 @@ class HertzSpring:
     def __post_init__(self) -> None:
         if self.bedding is not None:
             object.__setattr__(self, "_smooth", self._riding_height(np.zeros(self.nodes)))
+
+    def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
+        """Return a JSON-able description, and the array of weights."""
+        meta = {
+            "kind": "hertz",
+            "constant": self.constant,
+            "axis_constants": list(self.axis_constants),
+            "nodes": self.nodes,
+            "preload": self.preload,
+            "bedding": None if self.bedding is None else self.bedding.to_parts()[0],
+        }
+        return meta, {"weights": self.weights}
+
+    @classmethod
+    def from_parts(cls, meta: Mapping[str, Any], arrays: Mapping[str, NDArray]) -> HertzSpring:
+        """Rebuild it from `to_parts`."""
+        return cls(
+            constant=meta["constant"],
+            axis_constants=tuple(meta["axis_constants"]),
+            nodes=meta["nodes"],
+            weights=arrays["weights"],
+            bedding=None if meta["bedding"] is None else WinklerBedding.from_parts(meta["bedding"], {}),
+            preload=meta["preload"],
+        )
 
     def _riding_height(self, roughness: NDArray) -> float:
         assert self.bedding is not None

@@ -101,12 +101,12 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
             continue
         recursion = discretise(*part.state_space(), dt=dt)
         recursions.append(recursion)
-        decayed = sample(recursion, dt=dt)
+        # As a recursion the function is never cut; this is when it has decayed, which a free wheel's never does.
+        decays = np.isfinite(recursion.static_compliance())
         report[name] = {
             "states": len(recursion.beta),
             "first_sample": recursion.first,
-            # As a recursion the function is never cut; this is when it has decayed.
-            "decay_time": len(decayed.values) * dt,
+            "decay_time": len(sample(recursion, dt=dt).values) * dt if decays else None,
         }
     track, functions = track_of(case), None
     if track is not None:

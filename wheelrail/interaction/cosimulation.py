@@ -20,6 +20,7 @@ import numpy as np
 from ..errors import ParameterError, StateError
 from .inputs import INPUT_NAMES, Inputs
 from .model import Model
+from .parameters import is_finite_number
 from .start import start
 from .state import FORCE, ITERATIONS, RESIDUAL, RESULTS, State
 from .step import step
@@ -48,7 +49,7 @@ _ZERO = (
 OUTPUT_NAMES = (*RESULTS, *_STEP_RESULTS, *_ZERO, "in_contact", "distance")
 
 _MAGIC = b"WRSTATE1"
-_FINGERPRINT_BYTES = 16
+_CHECKSUM_BYTES, _FINGERPRINT_BYTES = 16, 16
 
 
 class CoSimulation:
@@ -138,7 +139,7 @@ class CoSimulation:
         for name, value in values.items():
             if name not in INPUT_NAMES:
                 raise ParameterError(name, value, f"no such input; there are: {', '.join(INPUT_NAMES)}")
-            if not isinstance(value, int | float) or not math.isfinite(value):
+            if not is_finite_number(value):
                 raise ParameterError(name, value, "a finite number is needed")
         # A new object: the one that is replaced may be the previous input of linear extrapolation.
         self._inputs = replace(self._inputs, **{name: float(value) for name, value in values.items()})
@@ -186,31 +187,29 @@ class CoSimulation:
         WheelrailError
             If the step can't be done; the run is then as it was before.
         """
-        if not isinstance(step_size, int | float) or not 0.0 <= step_size <= LONGEST_STEP:
+        if not is_finite_number(step_size) or not 0.0 <= step_size <= LONGEST_STEP:
             raise ParameterError("communication step size", step_size, f"must be 0 ... {LONGEST_STEP:g} s")
         state, model = self._current(), self.model
         elapsed, lost = _add(self._elapsed, self._lost, step_size)
         target = math.floor((elapsed - lost) / model.dt + REACHED)
         done = max(target - state.step, 0)
-        if self.recorder is not None and not self._advanced:
-            self.recorder(0.0, 0.0, 0.0, float(state.block[FORCE]))
-        if done:
-            self._run(state, done)
+        rows = [] if self._advanced else [(0.0, 0.0, 0.0, float(state.block[FORCE]))]
+        if done or (rows and self.recorder is not None):
+            self._run(state, done, rows)
         if elapsed > self._elapsed:
             self._previous, self._previous_time = self._inputs, self._elapsed
         self._elapsed, self._lost = elapsed, lost
         self._advanced = True
         return done
 
-    def _run(self, state: State, count: int) -> None:
-        """Do ``count`` internal steps, or none."""
+    def _run(self, state: State, count: int, rows: list[tuple[float, float, float, float]]) -> None:
+        """Do ``count`` internal steps, or none; they are recorded after ``rows`` once all are done."""
         block, model, recorder = state.block, self.model, self.recorder
         if self._backup.shape != block.shape:
             self._backup = np.empty_like(block)
         np.copyto(self._backup, block)
         inputs, extrapolate = self._inputs, self._slopes()
         total, largest, smallest, iterations, residual = 0.0, -math.inf, math.inf, 0, 0.0
-        rows = []
         try:
             for _ in range(count):
                 if extrapolate is not None:
@@ -230,6 +229,8 @@ class CoSimulation:
         except BaseException:
             np.copyto(block, self._backup)
             raise
+        if count == 0:
+            return
         self._mean, self._largest, self._smallest = total / count, largest, smallest
         self._iterations, self._residual = iterations, residual
         self._check_residual(residual)
@@ -292,7 +293,8 @@ class CoSimulation:
             "results": [self._mean, self._largest, self._smallest, self._iterations, self._residual],
         }
         text = json.dumps(header, sort_keys=True).encode()
-        return _MAGIC + self._base.fingerprint + struct.pack("<Q", len(text)) + text + state.to_bytes()
+        content = self._base.fingerprint + struct.pack("<Q", len(text)) + text + state.to_bytes()
+        return _MAGIC + content + _checksum(content)
 
     def load(self, data: bytes) -> None:
         """Continue from `save`, bit for bit.
@@ -303,9 +305,12 @@ class CoSimulation:
             If the data is damaged or of another model; the run is then as it was.
         """
         start_of_text = len(_MAGIC) + _FINGERPRINT_BYTES + 8
-        if len(data) < start_of_text or data[: len(_MAGIC)] != _MAGIC:
+        if len(data) < start_of_text + _CHECKSUM_BYTES or data[: len(_MAGIC)] != _MAGIC:
             raise StateError("the saved state is damaged: it does not begin as one")
-        if data[len(_MAGIC) : len(_MAGIC) + _FINGERPRINT_BYTES] != self._base.fingerprint:
+        data, checksum = data[:-_CHECKSUM_BYTES], data[-_CHECKSUM_BYTES:]
+        if _checksum(data[len(_MAGIC) :]) != checksum:
+            raise StateError("the saved state is damaged: its checksum differs")
+        if data[len(_MAGIC) : start_of_text - 8] != self._base.fingerprint:
             raise StateError("the saved state belongs to another model")
         (length,) = struct.unpack("<Q", data[start_of_text - 8 : start_of_text])
         try:
@@ -316,17 +321,23 @@ class CoSimulation:
             inputs = Inputs(*header["inputs"])
             previous = None if header["previous"] is None else Inputs(*header["previous"])
             mean, largest, smallest, iterations, residual = header["results"]
+            previous_time, elapsed, lost = header["previous_time"], header["elapsed"], header["lost"]
+            advanced = header["advanced"]
         except (ValueError, KeyError, TypeError, ParameterError) as error:
             raise StateError(f"the saved state is damaged: {error}") from error
         self.model, self._state, self._stale = model, state, False
-        self._inputs, self._previous, self._previous_time = inputs, previous, header["previous_time"]
-        self._elapsed, self._lost, self._advanced = header["elapsed"], header["lost"], header["advanced"]
+        self._inputs, self._previous, self._previous_time = inputs, previous, previous_time
+        self._elapsed, self._lost, self._advanced = elapsed, lost, advanced
         self._mean, self._largest, self._smallest = mean, largest, smallest
         self._iterations, self._residual = iterations, residual
 
     def digest(self) -> str:
         """Hash of `save`: equal runs have equal digests."""
         return hashlib.blake2b(self.save(), digest_size=16).hexdigest()
+
+
+def _checksum(content: bytes) -> bytes:
+    return hashlib.blake2b(content, digest_size=_CHECKSUM_BYTES).digest()
 
 
 def _add(total: float, lost: float, value: float) -> tuple[float, float]:

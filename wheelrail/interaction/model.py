@@ -115,7 +115,9 @@ class Model:
     @cached_property
     def fingerprint(self) -> bytes:
         """Hash of all that shapes a run apart from the parameters; 16 bytes."""
-        digest = hashlib.blake2b(repr((self.dx, self.contact, self.start_inputs)).encode(), digest_size=16)
+        digest = hashlib.blake2b(repr((self.dx, self.start_inputs)).encode(), digest_size=16)
+        meta, arrays = self.contact.to_parts()
+        _update(digest, meta, arrays)
         for recursion in (self.wheel, self.held_wheel):
             if recursion is not None:
                 for part in (recursion.phi, recursion.beta, recursion.c, np.array(recursion.first)):
@@ -124,10 +126,7 @@ class Model:
             digest.update(repr(self.track.shape).encode())
             digest.update(np.ascontiguousarray(self.track).data)
         for source in self.sources:
-            meta, arrays = source.to_parts()
-            digest.update(json.dumps(meta, sort_keys=True).encode())
-            for name in sorted(arrays):
-                digest.update(name.encode() + np.ascontiguousarray(arrays[name]).tobytes())
+            _update(digest, *source.to_parts())
         return digest.digest()
 
     def configured(self, **values: Any) -> Model:
@@ -163,3 +162,10 @@ class Model:
                 f"must be a multiple of dx = {self.dx:g} m; the nearest is {round(cells) * self.dx:g} m",
             )
         return replace(self, parameters=parameters)
+
+
+def _update(digest: Any, meta: dict[str, Any], arrays: dict[str, NDArray]) -> None:
+    """Add a description and its arrays to a hash."""
+    digest.update(json.dumps(meta, sort_keys=True).encode())
+    for name in sorted(arrays):
+        digest.update(name.encode() + np.ascontiguousarray(arrays[name]).tobytes())

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.bedding import WinklerBedding
-from ..contact.spring import HertzSpring
+from ..contact.parts import contact_from_parts
 from ..errors import ModelFileError
 from ..excitation.sources import source_from_parts
 from ..greens.recursion import Recursion
@@ -52,7 +50,7 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
     header["track"] = model.track is not None
     if model.track is not None:
         arrays["track"] = model.track
-    header["contact"], contact_arrays = _contact_parts(model.contact)
+    header["contact"], contact_arrays = model.contact.to_parts()
     arrays |= {f"contact.{name}": array for name, array in contact_arrays.items()}
     header["sources"] = []
     for number, source in enumerate(model.sources):
@@ -95,39 +93,9 @@ def load_model(path: str | os.PathLike[str]) -> Model:
         wheel=recursions["wheel"],
         held_wheel=recursions["held_wheel"],
         track=arrays.get("track"),
-        contact=_contact_from_parts(header["contact"], arrays),
+        contact=contact_from_parts(
+            header["contact"], {name[8:]: array for name, array in arrays.items() if name.startswith("contact.")}
+        ),
         sources=tuple(sources),
         report=header["report"],
-    )
-
-
-def _bedding_parts(bedding: WinklerBedding) -> dict[str, Any]:
-    return {field.name: getattr(bedding, field.name) for field in fields(bedding) if field.init}
-
-
-def _contact_parts(contact: object) -> tuple[dict[str, Any], dict[str, NDArray]]:
-    if isinstance(contact, WinklerBedding):
-        return {"kind": "winkler", **_bedding_parts(contact)}, {}
-    assert isinstance(contact, HertzSpring)
-    meta = {
-        "kind": "hertz",
-        "constant": contact.constant,
-        "axis_constants": list(contact.axis_constants),
-        "nodes": contact.nodes,
-        "preload": contact.preload,
-        "bedding": None if contact.bedding is None else _bedding_parts(contact.bedding),
-    }
-    return meta, {"weights": contact.weights}
-
-
-def _contact_from_parts(meta: dict[str, Any], arrays: dict[str, NDArray]) -> WinklerBedding | HertzSpring:
-    meta = dict(meta)
-    kind = meta.pop("kind")
-    if kind == "winkler":
-        return WinklerBedding(**meta)
-    bedding = meta.pop("bedding")
-    return HertzSpring(
-        **{**meta, "axis_constants": tuple(meta["axis_constants"])},
-        weights=np.asarray(arrays["contact.weights"]),
-        bedding=None if bedding is None else WinklerBedding(**bedding),
     )

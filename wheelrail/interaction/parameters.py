@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
+from numbers import Real
 from typing import Any
 
 from ..errors import ParameterError
 
-__all__ = ["COUPLINGS", "EXTRAPOLATIONS", "OWN_SEEDS", "Parameters"]
+__all__ = ["COUPLINGS", "EXTRAPOLATIONS", "OWN_SEEDS", "Parameters", "is_finite_number"]
 
 COUPLINGS = ("load", "displacement")
 EXTRAPOLATIONS = ("hold", "linear")
@@ -75,6 +76,16 @@ class Parameters:
         return asdict(self)
 
 
+def is_finite_number(value: object) -> bool:
+    """Tell whether a value can be used as a finite float; a truth value can't."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond the range of floats
+        return False
+
+
 def _checked(name: str, value: Any) -> Any:
     if name in ("coupling", "input_extrapolation"):
         allowed = COUPLINGS if name == "coupling" else EXTRAPOLATIONS
@@ -89,7 +100,7 @@ def _checked(name: str, value: Any) -> Any:
         if not isinstance(value, int) or isinstance(value, bool) or value < OWN_SEEDS:
             raise ParameterError(name, value, f"allowed: whole numbers >= 0, or {OWN_SEEDS} for the case's own seeds")
         return value
-    if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
+    if not is_finite_number(value):
         raise ParameterError(name, value, "a finite number is needed")
     if name == "speed" and value <= 0.0:
         raise ParameterError(name, value, "must be > 0 m/s")

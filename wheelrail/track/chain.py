@@ -25,6 +25,7 @@ __all__ = ["ChainStepper"]
 
 BLOCK_TOLERANCE = 1e-13  # scaled blocks below it are rounding noise of the matrix exponential and left out
 MAXIMUM_REACH = 8  # bays that a disturbance may cross in one step
+MOST_SUB_STEPS = 1024  # by then a finer mesh would cost less
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,11 @@ class ChainStepper:
             if reach is not None:
                 break
             sub_steps *= 2
+            if sub_steps > MOST_SUB_STEPS:
+                raise ValueError(
+                    f"elements_per_bay = {track.elements_per_bay} is too coarse for a time step of {dt:g} s; "
+                    "use more elements per bay"
+                )
         self.reach = reach
         self.sub_steps = sub_steps
         self._falling, self._rising = self._ramps(dt / sub_steps)
