@@ -33,11 +33,17 @@ RUNTIME = [
         f"interaction/{name}.py"
         for name in ("cosimulation", "inputs", "model", "model_file", "parameters", "start", "state", "step")
     ),
-    *(f"contact/{name}.py" for name in ("bedding", "newton", "parts", "solution", "spring")),
+    *(f"contact/{name}.py" for name in ("bedding", "newton", "parts", "solution", "spring", "tangential_models")),
+    *(
+        f"contact/{name}.py"
+        for name in ("influence", "half_space", "half_space_contact", "normal", "rolling", "tangential")
+    ),
+    *(f"contact/creep/{name}.py" for name in ("__init__", "creep_force", "kalker_coefficients", "linear", "fastsim")),
     *(f"excitation/{name}.py" for name in ("line", "sampled_heights", "sinusoid", "sources", "spectrum_line")),
     "excitation/synthesis.py",
     "greens/recursion.py",
     "numerics/array_file.py",
+    "numerics/blas_threads.py",
     "numerics/third_octave_bands.py",
     *(
         f"{part}/__init__.py"

@@ -12,12 +12,12 @@ TAG_KEYS: dict[str, str] = {"wheel": "model", "track": "model", "contact": "norm
 LATER_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
     ("wheel", "model"): ("flexible",),
     ("track", "model"): ("waveguide",),
-    ("contact", "normal"): ("half-space",),
-    ("contact", "tangential"): ("transient", "fastsim", "linear"),
+    ("contact", "normal"): (),
+    ("contact", "tangential"): (),
     ("friction", "law"): ("kraft", "polach", "table"),
     ("excitation", "type"): ("wheel-flat", "rail-joint"),
 }
-"""Values by section and key."""
+"""Values by section and key; every key that selects a model is here, also where nothing is to come."""
 
 LATER_KEYS: dict[str, frozenset[str]] = {
     "contact": frozenset({"wheel_profile", "rail_profile", "inclination"}),

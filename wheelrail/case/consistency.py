@@ -46,6 +46,7 @@ def cross_faults(data: Mapping[str, Any]) -> list[str]:
         faults += _odd_faults("contact.length", _positive(contact, "length"), "simulation.dx", dx)
     faults += _odd_faults("contact.width", _positive(contact, "width"), "contact.dy", _positive(contact, "dy"))
     faults += _prefilter_faults(contact)
+    faults += _tangential_faults(data)
     excitations = data.get("excitation")
     for index, excitation in enumerate(excitations if isinstance(excitations, list) else ()):
         if isinstance(excitation, dict):
@@ -121,13 +122,27 @@ def _prefilter_faults(contact: Mapping[str, Any]) -> Iterator[str]:
     prefilter = contact.get("prefilter")
     if prefilter not in ("average", "winkler"):
         return
-    if contact.get("normal") == "winkler":
+    if contact.get("normal") in ("winkler", "half-space"):
         yield (
             f'contact.prefilter = "{prefilter}": only with contact.normal = "hertz"; '
-            'with "winkler", which filters by itself, it must be "none"'
+            f'with "{contact["normal"]}", which filters by itself, it must be "none"'
         )
     elif contact.get("normal") == "hertz" and "length" not in contact:
         yield f'contact.length: missing; contact.prefilter = "{prefilter}" needs it (m)'
+
+
+def _tangential_faults(data: Mapping[str, Any]) -> Iterator[str]:
+    contact = _table(data, "contact")
+    tangential = contact.get("tangential")
+    if tangential == "transient" and contact.get("normal") in ("hertz", "winkler"):
+        yield 'contact.tangential = "transient": only with contact.normal = "half-space"'
+    if tangential in ("transient", "fastsim") and "friction" not in data:
+        yield f'friction: missing; contact.tangential = "{tangential}" needs [friction] with law and coefficient'
+    if tangential in ("transient", "fastsim", "linear") and "creepage" not in data:
+        yield (
+            f'creepage: missing; contact.tangential = "{tangential}" needs the section [creepage] with x, y, spin; '
+            "an FMU starts with these values"
+        )
 
 
 def _excitation_faults(label: str, excitation: Mapping[str, Any], dx: float | None) -> Iterator[str]:

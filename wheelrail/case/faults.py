@@ -134,7 +134,7 @@ def table_hint(section: str) -> str:
     if section in TAG_KEYS:
         keys = f"{TAG_KEYS[section]} = " + " | ".join(f'"{name}"' for name in models)
     else:
-        keys = in_words(models[None].model_fields)
+        keys = in_words(name for name, field in models[None].model_fields.items() if field.is_required())
     return f"add a table [{section}] with {keys}{preset_hint(section)}"
 
 

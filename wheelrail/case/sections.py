@@ -41,6 +41,12 @@ class Simulation(Section):
     dx: float = quantity("Grid spacing in the rolling direction; the time step is dx / speed", "m", gt=0)
     duration: float = quantity("Simulated time of a stand-alone run", "s", ge=0)
     start_position: float = quantity("First contact position, measured from a sleeper; a multiple of dx", "m")
+    first_sample: Literal["kept", "zero"] = Field(
+        default="kept",
+        description="First sample of the Green's functions: kept, the displacement in the step of the force itself, "
+        "with which force and displacement are solved together; zero, so that displacements follow from past forces "
+        "only, as the thesis has it in combined vertical and tangential runs",
+    )
 
 
 class RigidWheel(Section):
@@ -116,7 +122,11 @@ class _ContactBase(Section):
         description="Filter of the roughness before a hertz contact: none, the average over the nominal contact "
         "length, or the equivalent roughness of the Winkler bedding; winkler contact filters itself and takes none",
     )
-    tangential: Literal["none"] = Field(default="none", description="Tangential contact model: none")
+    tangential: Literal["none", "transient", "fastsim", "linear"] = Field(
+        default="none",
+        description="Tangential contact model: none (vertical only); transient rolling after Kalker (with half-space); "
+        "FASTSIM; Kalker's linear theory",
+    )
     lateral_shift: float = quantity("Lateral displacement of the wheelset on the rail", "m", 0.0)
 
 
@@ -134,6 +144,15 @@ class WinklerContact(_ContactBase):
 
     normal: Literal["winkler"] = Field(description="Normal contact model: Winkler bedding along the rail")
     length: float = quantity("Length of the potential contact area, an odd number of dx", "m", gt=0)
+
+
+class HalfSpaceContact(_ContactBase):
+    """``[contact]`` by the three-dimensional half-space."""
+
+    normal: Literal["half-space"] = Field(description="Normal contact model: elastic half-space after Kalker")
+    dy: float = quantity("Lateral element size", "m", gt=0)
+    length: float = quantity("Length of the potential contact area, an odd number of dx", "m", gt=0)
+    width: float = quantity("Width of the potential contact area, an odd number of dy", "m", gt=0)
 
 
 class Friction(Section):
@@ -209,4 +228,4 @@ class Output(Section):
 
 Wheel = Annotated[RigidWheel | Rigid1DofWheel | Rigid2DofWheel, Field(discriminator="model")]
 Track = Annotated[RigidTrack | DiscreteTrack, Field(discriminator="model")]
-Contact = Annotated[HertzContact | WinklerContact, Field(discriminator="normal")]
+Contact = Annotated[HertzContact | WinklerContact | HalfSpaceContact, Field(discriminator="normal")]

@@ -81,8 +81,20 @@ class WinklerBedding:
         del arrays
         return cls(**{name: value for name, value in meta.items() if name != "kind"})
 
+    @property
+    def memory(self) -> int:
+        """Nothing is kept from step to step."""
+        return 0
+
     def solve(
-        self, roughness: NDArray, *, weight: float, compliance: float, rhs: float, guess: float
+        self,
+        roughness: NDArray,
+        *,
+        weight: float,
+        compliance: float,
+        rhs: float,
+        guess: float,
+        memory: NDArray | None = None,
     ) -> NormalSolution:
         """Solve the contact, see `wheelrail.contact.solution.NormalContact`.
 
@@ -91,6 +103,7 @@ class WinklerBedding:
         ContactGridError
             If the contact reaches the edge of the grid.
         """
+        del memory
         dx = self.dx
         curvature = 0.5 / self.radius
         z = roughness + self._parabola

@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 
 from ..errors import ModelFileError
 from .bedding import WinklerBedding
+from .half_space_contact import HalfSpaceContact
 from .solution import NormalContact
 from .spring import HertzSpring
+from .tangential_models import CreepForceLaw, TangentialModel, TransientRolling
 
-__all__ = ["contact_from_parts"]
+__all__ = ["contact_from_parts", "tangential_model"]
 
-_KINDS = {"winkler": WinklerBedding, "hertz": HertzSpring}
+_KINDS = {"winkler": WinklerBedding, "hertz": HertzSpring, "half-space": HalfSpaceContact}
 
 
 def contact_from_parts(meta: Mapping[str, Any], arrays: Mapping[str, NDArray]) -> NormalContact:
@@ -32,3 +34,28 @@ def contact_from_parts(meta: Mapping[str, Any], arrays: Mapping[str, NDArray]) -
         return _KINDS[kind].from_parts(meta, arrays)
     except (KeyError, TypeError, ValueError) as error:
         raise ModelFileError(f"the model holds a damaged contact ({kind}): {error}") from error
+
+
+def tangential_model(meta: Mapping[str, Any], normal: NormalContact) -> TangentialModel | None:
+    """Make the tangential model of that ``kind``; None for "none".
+
+    Parameters
+    ----------
+    meta : mapping
+        ``kind``; for the laws ``shear_modulus`` in Pa and ``poisson_ratio``.
+    normal : NormalContact
+        Gives the grid for "transient".
+
+    Raises
+    ------
+    ModelFileError
+        If the kind is unknown, or transient rolling has no half-space to go with.
+    """
+    kind = meta.get("kind")
+    if kind == "none":
+        return None
+    if kind == "transient" and isinstance(normal, HalfSpaceContact):
+        return TransientRolling(normal.half_space)
+    if kind in ("fastsim", "linear"):
+        return CreepForceLaw(kind, meta["shear_modulus"], meta["poisson_ratio"])
+    raise ModelFileError(f"the model holds a tangential contact {kind!r} that does not go with its normal contact")

@@ -6,6 +6,8 @@ from typing import Any, NamedTuple, Protocol
 
 from numpy.typing import NDArray
 
+from .normal import NormalState
+
 __all__ = ["NormalContact", "NormalSolution"]
 
 
@@ -30,6 +32,8 @@ class NormalSolution(NamedTuple):
         Evaluations of the contact law.
     residual : float
         Of the coupled equation, relative to its largest term.
+    field : NormalState or None
+        Pressures and contact elements, of models that have them.
     """
 
     force: float
@@ -41,6 +45,7 @@ class NormalSolution(NamedTuple):
     pressure_max: float
     iterations: int
     residual: float
+    field: NormalState | None = None
 
 
 class NormalContact(Protocol):
@@ -51,12 +56,24 @@ class NormalContact(Protocol):
         """Number of roughness nodes that the model looks at, odd, centred on the nominal contact point."""
         ...
 
+    @property
+    def memory(self) -> int:
+        """Numbers that it keeps from step to step, as a warm start."""
+        ...
+
     def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
         """Return a JSON-able description with its ``kind``, and the arrays, for a file."""
         ...
 
     def solve(
-        self, roughness: NDArray, *, weight: float, compliance: float, rhs: float, guess: float
+        self,
+        roughness: NDArray,
+        *,
+        weight: float,
+        compliance: float,
+        rhs: float,
+        guess: float,
+        memory: NDArray | None = None,
     ) -> NormalSolution:
         """Solve ``weight * approach + compliance * force = rhs`` over the given roughness.
 
@@ -66,5 +83,7 @@ class NormalContact(Protocol):
             Combined roughness in m.
         weight, compliance, rhs, guess : float
             As `wheelrail.contact.newton.solve_approach` takes them.
+        memory : ndarray, shape (memory,), optional
+            What the step before left.
         """
         ...

@@ -117,10 +117,23 @@ class HertzSpring:
             return float(self.weights @ roughness)
         return self._smooth - self._riding_height(roughness)
 
+    @property
+    def memory(self) -> int:
+        """Nothing is kept from step to step."""
+        return 0
+
     def solve(
-        self, roughness: NDArray, *, weight: float, compliance: float, rhs: float, guess: float
+        self,
+        roughness: NDArray,
+        *,
+        weight: float,
+        compliance: float,
+        rhs: float,
+        guess: float,
+        memory: NDArray | None = None,
     ) -> NormalSolution:
         """Solve the contact, see `wheelrail.contact.solution.NormalContact`."""
+        del memory
         felt = self.equivalent_roughness(roughness)
         constant = self.constant
 

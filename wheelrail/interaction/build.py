@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..case import Case
 from ..contact.bedding import WinklerBedding
+from ..contact.half_space import HalfSpace
+from ..contact.half_space_contact import HalfSpaceContact
 from ..contact.hertz import HertzContact, hertz_contact
+from ..contact.parts import tangential_model
 from ..contact.solution import NormalContact
 from ..contact.spring import HertzSpring, averaging_weights
+from ..contact.tangential_models import TangentialModel
 from ..errors import CaseError
 from ..excitation.prepare import prepare_source
 from ..greens.cache import cached_moving_greens
@@ -22,7 +27,7 @@ from .inputs import Inputs
 from .model import Model
 from .parameters import OWN_SEEDS, Parameters
 
-__all__ = ["build_model", "hertz_of", "memory_of", "track_of", "wheel_of"]
+__all__ = ["build_model", "curvatures_of", "hertz_of", "memory_of", "track_of", "wheel_of"]
 
 
 def wheel_of(case: Case) -> RigidWheel | None:
@@ -59,13 +64,20 @@ def memory_of(case: Case) -> float | None:
     return None if case.track.model == "rigid" else case.track.memory
 
 
+def curvatures_of(case: Case) -> tuple[float, float]:
+    """Return the sums of wheel's and rail's curvatures in rolling and in lateral direction, 1/m."""
+    transverse = case.contact.wheel_transverse_radius
+    lateral = 1.0 / case.contact.rail_radius + (0.0 if transverse is None else 1.0 / transverse)
+    return 1.0 / case.wheel.radius, lateral
+
+
 def hertz_of(case: Case) -> HertzContact:
     """Solve Hertz contact of a case's geometry under its preload."""
     contact = case.contact
-    transverse = contact.wheel_transverse_radius
+    curvature_x, curvature_y = curvatures_of(case)
     return hertz_contact(
-        curvature_x=1.0 / case.wheel.radius,
-        curvature_y=1.0 / contact.rail_radius + (0.0 if transverse is None else 1.0 / transverse),
+        curvature_x=curvature_x,
+        curvature_y=curvature_y,
         youngs_modulus=contact.youngs_modulus,
         poisson_ratio=contact.poisson_ratio,
         load=case.load.preload,
@@ -147,6 +159,11 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
         random_seed=OWN_SEEDS,
         record=False,
     )
+    if simulation.first_sample == "zero":
+        recursions = [None if recursion is None else replace(recursion, first=0.0) for recursion in recursions]
+        if functions is not None:
+            functions = np.concatenate([np.zeros((len(functions), 1)), functions[:, 1:]], axis=1)
+    contact = _contact_of(case)
     return Model(
         title=case.title or "",
         case=case.to_toml(),
@@ -156,7 +173,8 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
         wheel=recursions[0],
         held_wheel=recursions[1],
         track=functions,
-        contact=_contact_of(case),
+        contact=contact,
+        tangential=_tangential_of(case, contact),
         sources=tuple(sources),
         report=report,
     ).configured()
@@ -173,9 +191,27 @@ def _start_inputs(case: Case) -> Inputs:
     )
 
 
+def _tangential_of(case: Case, normal: NormalContact) -> TangentialModel | None:
+    contact = case.contact
+    shear_modulus = contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio))
+    meta = {"kind": contact.tangential, "shear_modulus": shear_modulus, "poisson_ratio": contact.poisson_ratio}
+    return tangential_model(meta, normal)
+
+
 def _contact_of(case: Case) -> NormalContact:
     contact, dx = case.contact, case.simulation.dx
     hertz = hertz_of(case)
+    if contact.normal == "half-space":
+        grid = HalfSpace(
+            mx=round(contact.length / dx),
+            my=round(contact.width / contact.dy),
+            dx=dx,
+            dy=contact.dy,
+            shear_modulus=contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio)),
+            poisson_ratio=contact.poisson_ratio,
+        )
+        curvature_x, curvature_y = curvatures_of(case)
+        return HalfSpaceContact(grid, 1.0 / curvature_x, 1.0 / curvature_y)
     nodes = 1 if contact.length is None else round(contact.length / dx)
     calibration = {
         "load": hertz.load,

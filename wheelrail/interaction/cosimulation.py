@@ -16,13 +16,15 @@ from dataclasses import astuple, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import ParameterError, StateError
+from ..numerics.blas_threads import one_thread
 from .inputs import INPUT_NAMES, Inputs
 from .model import Model
 from .parameters import is_finite_number
 from .start import start
-from .state import FORCE, ITERATIONS, RESIDUAL, RESULTS, State
+from .state import FORCE, FORCE_X, FORCE_Y, ITERATIONS, RESIDUAL, RESULTS, State
 from .step import step
 
 __all__ = ["OUTPUT_NAMES", "RESIDUAL_LIMIT", "CoSimulation"]
@@ -31,24 +33,22 @@ REACHED = 1e-6  # share of dt by which a communication point may miss an interna
 RESIDUAL_LIMIT = 1e-9  # a larger relative residual of the contact solution is reported
 LONGEST_STEP = 1e6  # s; a longer communication step is a mistake
 
-_STEP_RESULTS = ("force_z_mean", "force_z_max", "force_z_min", "solver_iterations", "solver_residual")
-# Ports whose physics this version does not have yet.
-_ZERO = (
-    "force_x",
-    "force_y",
+_STEP_RESULTS = (
     "force_x_mean",
     "force_y_mean",
-    "moment_spin",
-    "wheel_disp_x",
-    "wheel_disp_y",
-    "rail_disp_x",
-    "rail_disp_y",
-    "slip_fraction",
-    "friction_power",
+    "force_z_mean",
+    "force_z_max",
+    "force_z_min",
+    "solver_iterations",
+    "solver_residual",
 )
+# Ports whose physics this version does not have yet.
+_ZERO = ("wheel_disp_x", "wheel_disp_y", "rail_disp_x", "rail_disp_y")
 OUTPUT_NAMES = (*RESULTS, *_STEP_RESULTS, *_ZERO, "in_contact", "distance")
 
-_MAGIC = b"WRSTATE1"
+_MEANS = {"force_x_mean": 0, "force_y_mean": 1, "force_z_mean": 2}
+
+_MAGIC = b"WRSTATE2"
 _CHECKSUM_BYTES, _FINGERPRINT_BYTES = 16, 16
 
 
@@ -154,12 +154,13 @@ class CoSimulation:
         WheelrailError
             If there is none, for example where the excitation does not cover the start.
         """
-        state = start(self.model, self._inputs)
+        with one_thread():
+            state = start(self.model, self._inputs)
         self._state = state
         self._stale = False
         self._clear_clock()
-        force = float(state.block[FORCE])
-        self._mean = self._largest = self._smallest = force
+        self._means = _forces(state.block)
+        self._largest = self._smallest = float(state.block[FORCE])
         self._iterations, self._residual = int(state.block[ITERATIONS]), float(state.block[RESIDUAL])
         self._check_residual(self._residual)
 
@@ -193,7 +194,7 @@ class CoSimulation:
         elapsed, lost = _add(self._elapsed, self._lost, step_size)
         target = math.floor((elapsed - lost) / model.dt + REACHED)
         done = max(target - state.step, 0)
-        rows = [] if self._advanced else [(0.0, 0.0, 0.0, float(state.block[FORCE]))]
+        rows = [] if self._advanced else [(0.0, *_forces(state.block))]
         if done or (rows and self.recorder is not None):
             self._run(state, done, rows)
         if elapsed > self._elapsed:
@@ -209,20 +210,24 @@ class CoSimulation:
             self._backup = np.empty_like(block)
         np.copyto(self._backup, block)
         inputs, extrapolate = self._inputs, self._slopes()
-        total, largest, smallest, iterations, residual = 0.0, -math.inf, math.inf, 0, 0.0
+        totals = [0.0, 0.0, 0.0]
+        largest, smallest, iterations, residual = -math.inf, math.inf, 0, 0.0
         try:
-            for _ in range(count):
-                if extrapolate is not None:
-                    ahead = (state.step + 1) * model.dt - self._elapsed
-                    inputs = Inputs(*(v + s * ahead for v, s in zip(astuple(self._inputs), extrapolate, strict=True)))
-                step(model, state, inputs)
-                force = float(block[FORCE])
-                total += force
-                largest, smallest = max(largest, force), min(smallest, force)
-                iterations = max(iterations, int(block[ITERATIONS]))
-                residual = max(residual, float(block[RESIDUAL]))
-                if recorder is not None:
-                    rows.append((state.step * model.dt, 0.0, 0.0, force))
+            with one_thread():
+                for _ in range(count):
+                    if extrapolate is not None:
+                        ahead = (state.step + 1) * model.dt - self._elapsed
+                        inputs = Inputs(
+                            *(v + s * ahead for v, s in zip(astuple(self._inputs), extrapolate, strict=True))
+                        )
+                    step(model, state, inputs)
+                    forces = _forces(block)
+                    totals = [total + force for total, force in zip(totals, forces, strict=True)]
+                    largest, smallest = max(largest, forces[2]), min(smallest, forces[2])
+                    iterations = max(iterations, int(block[ITERATIONS]))
+                    residual = max(residual, float(block[RESIDUAL]))
+                    if recorder is not None:
+                        rows.append((state.step * model.dt, *forces))
             if recorder is not None:
                 for row in rows:
                     recorder(*row)
@@ -231,7 +236,8 @@ class CoSimulation:
             raise
         if count == 0:
             return
-        self._mean, self._largest, self._smallest = total / count, largest, smallest
+        self._means = tuple(total / count for total in totals)
+        self._largest, self._smallest = largest, smallest
         self._iterations, self._residual = iterations, residual
         self._check_residual(residual)
 
@@ -261,8 +267,8 @@ class CoSimulation:
         state = self._current()
         if name in RESULTS:
             return float(state.block[RESULTS[name]])
-        if name == "force_z_mean":
-            return self._mean
+        if name in _MEANS:
+            return self._means[_MEANS[name]]
         if name == "force_z_max":
             return self._largest
         if name == "force_z_min":
@@ -290,7 +296,7 @@ class CoSimulation:
             "elapsed": self._elapsed,
             "lost": self._lost,
             "advanced": self._advanced,
-            "results": [self._mean, self._largest, self._smallest, self._iterations, self._residual],
+            "results": [self._means, self._largest, self._smallest, self._iterations, self._residual],
         }
         text = json.dumps(header, sort_keys=True).encode()
         content = self._base.fingerprint + struct.pack("<Q", len(text)) + text + state.to_bytes()
@@ -320,7 +326,7 @@ class CoSimulation:
             state = State.from_bytes(model, data[start_of_text + length :])
             inputs = Inputs(*header["inputs"])
             previous = None if header["previous"] is None else Inputs(*header["previous"])
-            mean, largest, smallest, iterations, residual = header["results"]
+            means, largest, smallest, iterations, residual = header["results"]
             previous_time, elapsed, lost = header["previous_time"], header["elapsed"], header["lost"]
             advanced = header["advanced"]
         except (ValueError, KeyError, TypeError, ParameterError) as error:
@@ -328,12 +334,17 @@ class CoSimulation:
         self.model, self._state, self._stale = model, state, False
         self._inputs, self._previous, self._previous_time = inputs, previous, previous_time
         self._elapsed, self._lost, self._advanced = elapsed, lost, advanced
-        self._mean, self._largest, self._smallest = mean, largest, smallest
+        self._means, self._largest, self._smallest = tuple(means), largest, smallest
         self._iterations, self._residual = iterations, residual
 
     def digest(self) -> str:
         """Hash of `save`: equal runs have equal digests."""
         return hashlib.blake2b(self.save(), digest_size=16).hexdigest()
+
+
+def _forces(block: NDArray) -> tuple[float, float, float]:
+    """Contact forces of the last step on the rail, N."""
+    return float(block[FORCE_X]), float(block[FORCE_Y]), float(block[FORCE])
 
 
 def _checksum(content: bytes) -> bytes:

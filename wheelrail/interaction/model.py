@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.solution import NormalContact
+from ..contact.tangential_models import TangentialModel
 from ..errors import ParameterError
 from ..greens.recursion import Recursion
 from .inputs import Inputs
@@ -58,6 +59,8 @@ class Model:
     track : ndarray, shape (positions, samples), or None
         Moving Green's functions of one bay; None for a rigid track.
     contact : NormalContact
+    tangential : TangentialModel or None
+        None for a run in vertical direction only.
     sources : tuple of Source
         Excitation as the case gives it.
     report : dict
@@ -73,6 +76,7 @@ class Model:
     held_wheel: Recursion | None
     track: NDArray | None
     contact: NormalContact
+    tangential: TangentialModel | None
     sources: tuple[Source, ...]
     report: dict[str, Any]
 
@@ -115,7 +119,8 @@ class Model:
     @cached_property
     def fingerprint(self) -> bytes:
         """Hash of all that shapes a run apart from the parameters; 16 bytes."""
-        digest = hashlib.blake2b(repr((self.dx, self.start_inputs)).encode(), digest_size=16)
+        tangential = None if self.tangential is None else self.tangential.kind
+        digest = hashlib.blake2b(repr((self.dx, self.start_inputs, tangential)).encode(), digest_size=16)
         meta, arrays = self.contact.to_parts()
         _update(digest, meta, arrays)
         for recursion in (self.wheel, self.held_wheel):

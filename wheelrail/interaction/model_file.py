@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from ..contact.parts import contact_from_parts
+from ..contact.parts import contact_from_parts, tangential_model
 from ..errors import ModelFileError
 from ..excitation.sources import source_from_parts
 from ..greens.recursion import Recursion
@@ -52,6 +52,7 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
         arrays["track"] = model.track
     header["contact"], contact_arrays = model.contact.to_parts()
     arrays |= {f"contact.{name}": array for name, array in contact_arrays.items()}
+    header["tangential"] = {"kind": "none"} if model.tangential is None else model.tangential.to_parts()
     header["sources"] = []
     for number, source in enumerate(model.sources):
         meta, parts = source.to_parts()
@@ -84,6 +85,8 @@ def load_model(path: str | os.PathLike[str]) -> Model:
     for number, entry in enumerate(header["sources"]):
         parts = {name: arrays[f"source{number}.{name}"] for name in entry["arrays"]}
         sources.append(source_from_parts(entry["meta"], parts))
+    contact_arrays = {name[8:]: array for name, array in arrays.items() if name.startswith("contact.")}
+    contact = contact_from_parts(header["contact"], contact_arrays)
     return Model(
         title=header["title"],
         case=header["case"],
@@ -93,9 +96,8 @@ def load_model(path: str | os.PathLike[str]) -> Model:
         wheel=recursions["wheel"],
         held_wheel=recursions["held_wheel"],
         track=arrays.get("track"),
-        contact=contact_from_parts(
-            header["contact"], {name[8:]: array for name, array in arrays.items() if name.startswith("contact.")}
-        ),
+        contact=contact,
+        tangential=tangential_model(header["tangential"], contact),
         sources=tuple(sources),
         report=header["report"],
     )

@@ -16,7 +16,7 @@ from .cosimulation import OUTPUT_NAMES, REACHED, RESIDUAL_LIMIT
 from .inputs import Inputs
 from .model import Model
 from .start import start
-from .state import FORCE, ITERATIONS, RESIDUAL, RESULTS, SCALARS, State
+from .state import FORCE, FORCE_X, FORCE_Y, ITERATIONS, RESIDUAL, RESULTS, SCALARS, State
 from .step import step
 
 __all__ = ["BLOCK", "Simulation", "Statistics", "simulate", "stand_alone_inputs", "step_count"]
@@ -29,6 +29,8 @@ _log = logging.getLogger(__name__)
 # Over one step, mean and extremes are the force itself, and the largest count and residual those of the step.
 _PER_STEP = {
     **RESULTS,
+    "force_x_mean": FORCE_X,
+    "force_y_mean": FORCE_Y,
     "force_z_mean": FORCE,
     "force_z_max": FORCE,
     "force_z_min": FORCE,

@@ -12,7 +12,7 @@ import numpy as np
 from .inputs import Inputs
 from .model import Model
 from .state import HEAD, OFFSET, RAIL, STEP, WHEEL, State
-from .step import roughness_window, store_solution, track_functions
+from .step import creepages_of, roughness_window, store_solution, store_tangential, track_functions
 
 __all__ = ["start"]
 
@@ -59,7 +59,11 @@ def start(model: Model, inputs: Inputs) -> State:
             steady = np.linalg.solve(np.eye(len(wheel.beta)) - wheel.phi, wheel.beta)
             state.wheel[:] = -solution.force * steady
         block[WHEEL] = inputs.wheel_z - wheel_compliance * solution.force
-    store_solution(block, solution)
+    store_solution(state, solution)
+    if model.tangential is not None:
+        friction = model.parameters.friction_coefficient
+        begun = model.tangential.begin(solution, creepages_of(inputs), friction=friction, dx=model.dx)
+        store_tangential(model, state, begun)
     block[RAIL] = rail_compliance * solution.force
     if functions is not None:
         state.future[: state.samples] = solution.force * unit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,8 @@ __all__ = ["RESULTS", "State"]
 STEP, HEAD, OFFSET = 0, 1, 2
 # Results of the last step, which are the next step's warm start and the outputs.
 FORCE, APPROACH, STIFFNESS, LENGTH, WIDTH, AREA, PRESSURE, ITERATIONS, RESIDUAL, WHEEL, RAIL = range(3, 14)
-SCALARS = 14
+FORCE_X, FORCE_Y, MOMENT, SLIP, POWER = range(14, 19)
+SCALARS = 19
 
 RESULTS = {
     "force_z": FORCE,
@@ -28,6 +30,11 @@ RESULTS = {
     "pressure_max": PRESSURE,
     "wheel_disp_z": WHEEL,
     "rail_disp_z": RAIL,
+    "force_x": FORCE_X,
+    "force_y": FORCE_Y,
+    "moment_spin": MOMENT,
+    "slip_fraction": SLIP,
+    "friction_power": POWER,
 }
 
 
@@ -37,27 +44,32 @@ class State:
     Attributes
     ----------
     block : ndarray, shape (size,)
-        All of it: scalars, the wheel's recursion, the rail's future displacements. The latter lie in a buffer of twice
-        their length through which a window slides, so that a step adds to one contiguous stretch.
+        All of it: scalars, the wheel's recursion, what the contact models keep, the rail's future displacements. The
+        latter lie in a buffer of twice their length through which a window slides, so that a step adds to one
+        contiguous stretch.
     wheel : ndarray
         View of the recursion's state.
+    normal, tangential : ndarray
+        Views of what the contact models keep: pressures and tractions of the last step, if they have any.
     future : ndarray
         View of the buffer; the present step's entry is ``future[block[HEAD]]``.
     """
 
-    __slots__ = ("_pushed", "block", "future", "samples", "wheel", "window")
+    __slots__ = ("_pushed", "block", "future", "normal", "samples", "tangential", "wheel", "window")
 
     def __init__(self, model: Model, block: NDArray | None = None) -> None:
         wheel = 0 if model.active_wheel is None else len(model.active_wheel.beta)
         self.samples = 1 if model.track is None else model.track.shape[1]
-        size = SCALARS + wheel + 2 * self.samples
+        normal = model.contact.memory
+        tangential = 0 if model.tangential is None else model.tangential.memory
+        ends = np.cumsum([SCALARS, wheel, normal, tangential, 2 * self.samples])
+        size = int(ends[-1])
         if block is None:
             block = np.zeros(size)
         elif block.shape != (size,):
             raise StateError(f"the state has {block.size} numbers, not the {size} of this model: it is another model's")
         self.block = block
-        self.wheel = block[SCALARS : SCALARS + wheel]
-        self.future = block[SCALARS + wheel :]
+        self.wheel, self.normal, self.tangential, self.future = (block[first:last] for first, last in pairwise(ends))
         # Work space, not part of the state: it is overwritten before it is read.
         self.window = np.zeros(model.contact.nodes)
         self._pushed = np.empty(self.samples)

@@ -15,6 +15,7 @@ import math
 from numpy.typing import NDArray
 
 from ..contact.solution import NormalSolution
+from ..contact.tangential_models import Creepages, TangentialSolution
 from ..errors import WheelrailError
 from .inputs import Inputs
 from .model import Model
@@ -22,13 +23,18 @@ from .state import (
     APPROACH,
     AREA,
     FORCE,
+    FORCE_X,
+    FORCE_Y,
     HEAD,
     ITERATIONS,
     LENGTH,
+    MOMENT,
     OFFSET,
+    POWER,
     PRESSURE,
     RAIL,
     RESIDUAL,
+    SLIP,
     STEP,
     STIFFNESS,
     WHEEL,
@@ -57,8 +63,32 @@ def track_functions(model: Model, step: int) -> NDArray | None:
     return None if track is None else track[(model.start_index + step) % len(track)]
 
 
-def store_solution(block: NDArray, solution: NormalSolution) -> None:
-    """Put the contact's results at their place in the state."""
+def creepages_of(inputs: Inputs) -> Creepages:
+    """Return the creepages among the inputs."""
+    return Creepages(inputs.creepage_x, inputs.creepage_y, inputs.creepage_spin)
+
+
+def store_tangential(model: Model, state: State, solution: TangentialSolution | None) -> None:
+    """Put the results of the tangential contact at their place in the state."""
+    if solution is None:
+        return
+    block = state.block
+    block[FORCE_X] = solution.force_x
+    block[FORCE_Y] = solution.force_y
+    block[MOMENT] = solution.moment_spin
+    block[SLIP] = solution.slip_fraction
+    block[POWER] = solution.friction_work / model.dt
+    block[ITERATIONS] = max(block[ITERATIONS], solution.iterations)
+    block[RESIDUAL] = max(block[RESIDUAL], solution.residual)
+    if solution.memory is not None:
+        state.tangential[:] = solution.memory
+
+
+def store_solution(state: State, solution: NormalSolution) -> None:
+    """Put the results of the normal contact at their place in the state."""
+    block = state.block
+    if solution.field is not None:
+        state.normal[:] = solution.field.pressure
     block[FORCE] = solution.force
     block[APPROACH] = solution.approach
     block[STIFFNESS] = solution.stiffness
@@ -102,7 +132,9 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     offset = float(block[OFFSET]) if by_load else inputs.wheel_z
     guess = float(block[APPROACH])
     if by_load and wheel is None:  # a wheel without dynamics: the contact force is the load
-        solution = model.contact.solve(roughness, weight=0.0, compliance=1.0, rhs=load, guess=guess)
+        solution = model.contact.solve(
+            roughness, weight=0.0, compliance=1.0, rhs=load, guess=guess, memory=state.normal
+        )
     else:
         solution = model.contact.solve(
             roughness,
@@ -110,12 +142,25 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
             compliance=wheel_first + rail_first,
             rhs=offset + wheel_known + wheel_first * load - rail_known,
             guess=guess,
+            memory=state.normal,
         )
     force = solution.force
     if not (math.isfinite(force) and math.isfinite(solution.approach)):
         raise WheelrailError(
             f"the contact force is not finite at step {number} (load {load!r} N, wheel_z {inputs.wheel_z!r} m)"
         )
+    # Wheel and rail are of one material: the tangential contact does not act back on the normal one.
+    tangential = None
+    if model.tangential is not None:
+        tangential = model.tangential.step(
+            solution,
+            creepages_of(inputs),
+            friction=model.parameters.friction_coefficient,
+            dx=model.dx,
+            memory=state.tangential,
+        )
+        if not (math.isfinite(tangential.force_x) and math.isfinite(tangential.force_y)):
+            raise WheelrailError(f"the tangential force is not finite at step {number} ({creepages_of(inputs)})")
     # Nothing fails from here on.
     rail = rail_known + rail_first * force
     if wheel is not None:
@@ -126,7 +171,8 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     else:
         block[WHEEL] = inputs.wheel_z
     block[RAIL] = rail
-    store_solution(block, solution)
+    store_solution(state, solution)
+    store_tangential(model, state, tangential)
     if functions is not None:
         state.push(functions, force)
     block[STEP] = number

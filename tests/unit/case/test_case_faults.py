@@ -93,7 +93,7 @@ SINGLE = [
     ({"contact.length": None}, "contact.length: missing; give it (m)"),
     ({"load.preload": None}, 'load.preload: missing; give it (N) or name a preset (preset = "thesis-65kN")'),
     ({"load.coupling": None}, "load.coupling: missing; give one of: load, displacement"),
-    ({"contact.normal": None}, "contact.normal: missing; give one of: hertz, winkler"),
+    ({"contact.normal": None}, "contact.normal: missing; give one of: hertz, winkler, half-space"),
     ({"excitation.1.type": None}, "excitation #2.type: missing; give one of: sinusoid, measured, spectrum"),
     (
         {"simulation": None},
@@ -106,12 +106,26 @@ SINGLE = [
     # not one of the names
     ({"load.coupling": "lod"}, "load.coupling = \"lod\": did you mean 'load'? must be one of: load, displacement"),
     ({"excitation.0.on": "sleeper"}, 'excitation #1.on = "sleeper": must be one of: wheel, rail'),
-    ({"contact.normal": "herz"}, "contact.normal = \"herz\": did you mean 'hertz'? must be one of: hertz, winkler"),
-    ({"contact.normal": 3}, "contact.normal = 3: must be one of: hertz, winkler"),
+    (
+        {"contact.normal": "herz"},
+        "contact.normal = \"herz\": did you mean 'hertz'? must be one of: hertz, winkler, half-space",
+    ),
+    ({"contact.normal": 3}, "contact.normal = 3: must be one of: hertz, winkler, half-space"),
     ({"output.record": []}, None),
     # in later versions
-    ({"contact.normal": "half-space"}, f'contact.normal = "half-space": {VERSION_WORDS}; available: hertz, winkler'),
-    ({"contact.tangential": "fastsim"}, f'contact.tangential = "fastsim": {VERSION_WORDS}; available: none'),
+    (
+        {
+            "contact.tangential": "transient",
+            "friction": {"law": "constant", "coefficient": 0.3},
+            "creepage": {"x": 0.0, "y": 0.0, "spin": 0.0},
+        },
+        'contact.tangential = "transient": only with contact.normal = "half-space"',
+    ),
+    (
+        {"contact.tangential": "linear"},
+        'creepage: missing; contact.tangential = "linear" needs the section [creepage] with x, y, spin; '
+        "an FMU starts with these values",
+    ),
     (
         {"wheel": {"model": "flexible", "section": "c20", "modes": "m.csv"}},
         f'wheel.model = "flexible": {VERSION_WORDS}; available: rigid, rigid-1dof, rigid-2dof',
@@ -273,9 +287,9 @@ def test_all_faults_in_one_report():
             "wheel.masss": 1,
             "track.pad_stiffness": "stiff",
             "track.sleeper_spacing": 0.6005,
-            "contact.normal": "half-space",
+            "contact.normal": "elastic",
             "contact.youngs_modulus": -1,
-            "contact.tangential": "linear",
+            "contact.tangential": "sticky",
             "contact.length": 0.02,
             "load.preload": None,
             "excitation.0.type": "sinusoid",
