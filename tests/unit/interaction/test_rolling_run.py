@@ -103,7 +103,7 @@ def test_creep_force_laws(normal, tangential):
 
 
 def test_a_smaller_grid_is_refused_with_one_that_is_enough():
-    with pytest.raises(ContactGridError, match="contact.length") as caught:
+    with pytest.raises(ContactGridError, match=r"contact\.length") as caught:
         run_of(contact__length=11e-3, contact__width=9e-3).initialise()
     words = str(caught.value)
     length = float(words.split("contact.length = ")[1].split(" m")[0])

@@ -1,0 +1,72 @@
+"""The grid along the rail, the time step, and what a step costs."""
+
+from __future__ import annotations
+
+from wheelrail.case import Case
+from wheelrail.contact.hertz import HertzContact
+from wheelrail.greens.moving import MovingGreens, horizon_of
+from wheelrail.interaction.build import memory_of
+from wheelrail.interaction.simulate import step_count
+from wheelrail.track.discrete import DiscreteTrack
+from wheelrail.wheel.rigid import RigidWheel
+
+__all__ = ["explain_cost", "explain_grid"]
+
+_FEWEST_NODES = 8  # across the nominal contact; below, its edges move by a large share of it from node to node
+_ITERATIONS = 4  # evaluations of the contact law that a step usually takes
+
+
+def explain_grid(case: Case, hertz: HertzContact, warnings: list[str]) -> list[str]:
+    """Return the lines on grid and time; add to ``warnings`` if the grid is coarse for the contact."""
+    simulation = case.simulation
+    dx, speed = simulation.dx, simulation.speed
+    dt = dx / speed
+    steps = step_count(duration=simulation.duration, dt=dt)
+    nodes = 2.0 * hertz.semi_axis_x / dx
+    if nodes < _FEWEST_NODES:
+        allowed = 2.0 * hertz.semi_axis_x / _FEWEST_NODES
+        warnings.append(
+            f"the nominal contact is only {nodes:.1f} dx long; at least {_FEWEST_NODES} are advised "
+            f"(dx <= {allowed * 1e3:.2g} mm)"
+        )
+    return [
+        f"speed                     {speed:g} m/s ({speed * 3.6:.4g} km/h)",
+        f"grid spacing dx           {dx * 1e3:g} mm",
+        f"time step dt = dx / v     {dt * 1e6:.5g} us",
+        f"sampling frequency        {1.0 / dt:.6g} Hz, Nyquist {0.5 / dt:.6g} Hz",
+        f"shortest wavelength       {2e3 * dx:g} mm (2 dx), at this speed {0.5 / dt:.6g} Hz",
+        f"duration                  {simulation.duration:g} s = {steps} steps, "
+        f"{simulation.duration * speed:.4g} m from x = {simulation.start_position:g} m (a sleeper is at 0)",
+    ]
+
+
+def explain_cost(
+    case: Case, wheel: RigidWheel | None, track: DiscreteTrack | None, greens: MovingGreens | None
+) -> list[str]:
+    """Return the lines on arithmetic and memory traffic per step."""
+    simulation = case.simulation
+    dt = simulation.dx / simulation.speed
+    operations, moved = 0.0, 0.0
+    estimated = ""
+    if track is not None:
+        if greens is not None:
+            samples = greens.values.shape[1]
+        else:
+            samples = max(int((memory_of(case) or horizon_of(track, simulation.speed)) / dt), 2)
+            estimated = "" if memory_of(case) else "at most "
+        # One Green's function times the force, added to the future: reads both, writes a product and the sum.
+        operations += 2.0 * samples
+        moved += 8.0 * 5.0 * samples
+    if wheel is not None:
+        states = 2 * len(wheel.mass_matrix)
+        operations += 2.0 * states * (states + 2)
+    nodes = 1 if case.contact.length is None else round(case.contact.length / simulation.dx)
+    operations += (20.0 * nodes * _ITERATIONS) if case.contact.normal == "winkler" else 2.0 * nodes + 10.0 * _ITERATIONS
+    moved += 8.0 * nodes * (len(case.excitation) + 1)
+    per_second = 1.0 / dt
+    return [
+        f"per step                  {estimated}{operations:.3g} floating-point operations, {estimated}"
+        f"{moved / 1e3:.3g} kB of memory traffic",
+        f"per simulated second      {per_second:.4g} steps, {estimated}{operations * per_second / 1e9:.2g} Gflop; the "
+        "interpreter's own time comes on top",
+    ]

@@ -1,0 +1,69 @@
+"""The equations of a case, and the publications they come from."""
+
+from __future__ import annotations
+
+from wheelrail.case import Case
+from wheelrail.track.discrete import DiscreteTrack
+from wheelrail.wheel.rigid import RigidWheel
+
+__all__ = ["explain_equations", "explain_sources"]
+
+
+def explain_equations(case: Case, wheel: RigidWheel | None, track: DiscreteTrack | None) -> list[str]:
+    """Return the equations of a case and where they are printed."""
+    coupled = case.load.coupling == "load"
+    lines = [
+        "In each step a, with F the contact force on the rail (compression > 0), P the load on the wheel, d the "
+        "approach, r the combined roughness (asperities on wheel or rail > 0):"
+    ]
+    if coupled and wheel is None:
+        lines += [_equation("F(a) = P", "the wheel has no dynamics")]
+    elif coupled:
+        lines += [_equation("d(a) = d0 + xi_W(a) - xi_R(a)", "d0 from equilibrium at the start")]
+    else:
+        own = " + xi_W(a)" if wheel is not None else ""
+        lines += [_equation(f"d(a) = wheel_z(a){own} - xi_R(a)", "the vehicle moves the wheel")]
+    if wheel is not None:
+        pushed = "[F - P]" if coupled else "F"
+        lines += [_equation(f"xi_W(a) = - sum_n g_W(n) {pushed}(a - n + 1)", "Pieringer 2011, eqs. 3.5 to 3.8")]
+    if track is not None:
+        lines += [_equation("xi_R(a) = sum_n g_R^{v,(a-n)dx}(n) F(a - n + 1)", "Pieringer 2011, eqs. 3.11 to 3.17")]
+    else:
+        lines += [_equation("xi_R(a) = 0", "rigid track")]
+    if case.contact.normal == "winkler":
+        lines += [_equation("F = k' integral max(0, d + r(x) - x^2 / (2 R')) dx", "Pieringer 2011, eqs. 3.23 to 3.30")]
+    else:
+        filters = {
+            "none": "r at the nominal contact point",
+            "average": "r averaged over the nominal contact length",
+            "winkler": "r as a Winkler bedding under the preload feels it",
+        }
+        lines += [
+            _equation("F = C_H max(0, d + r)^1.5", "Pieringer 2011, eq. 2.19"),
+            f"    with {filters[case.contact.prefilter]}",
+        ]
+    return [*lines, "Vertical direction only. The equation for d(a) is solved by Newton's method with a safeguard."]
+
+
+def _equation(text: str, remark: str) -> str:
+    return f"    {text:<56}  {remark}"
+
+
+def explain_sources(case: Case, track: DiscreteTrack | None) -> list[str]:
+    """Return the publications behind a case."""
+    lines = [
+        "Pieringer 2011, Time-domain modelling of high-frequency wheel/rail interaction, PhD thesis, Chalmers "
+        "(equation numbers above)",
+        "Johnson 1985, Contact mechanics, section 4.2 (Hertz contact)",
+    ]
+    if track is not None:
+        lines.append(
+            "Nordborg 2002, Wheel/rail noise generation due to nonlinear effects and parametric excitation, "
+            "J. Acoust. Soc. Am. 111 (moving Green's functions)"
+        )
+    if case.contact.prefilter == "winkler":
+        lines.append(
+            "Ford and Thompson 2006, Simplified contact filters in wheel/rail noise prediction, J. Sound Vib. 293 "
+            "(equivalent roughness)"
+        )
+    return lines
