@@ -88,6 +88,16 @@ def _parser() -> argparse.ArgumentParser:
     plot.add_argument("--format", choices=("png", "pdf", "svg"), default="png", help="left out: png")
     plot.set_defaults(command=_plot)
 
+    contact = commands.add_parser("contact", help="draw pressure, tractions, stick and slip at steps of a run")
+    contact.add_argument("case", metavar="CASE", help="case file with a half-space contact")
+    contact.add_argument("--step", type=int, action="append", metavar="N", help="step, may be repeated; left out: last")
+    contact.add_argument("--animate", action="store_true", help="also a GIF from the first of the steps to the last")
+    contact.add_argument(
+        "--output", metavar="DIR", default=".", help="folder of the figures; left out: the current one"
+    )
+    contact.add_argument("--format", choices=("png", "pdf", "svg"), default="png", help="left out: png")
+    contact.set_defaults(command=_contact)
+
     explain = commands.add_parser("explain", help="say in words and numbers what a case computes")
     explain.add_argument("case", nargs="?", metavar="CASE", help=case_help)
     explain.set_defaults(command=_explain)
@@ -212,6 +222,32 @@ def _plot(options: argparse.Namespace) -> int:
         print(path)
     for reason in plots.left_out:
         _say(f"left out: {reason}")
+    return 0
+
+
+def _contact(options: argparse.Namespace) -> int:
+    from wheelrail.interaction.build import build_model
+    from wheelrail.interaction.simulate import step_count
+    from wheelrail.plotting.contact_run import draw_contact
+
+    case = _case_of(options)
+    with progress_bar("Green's functions") as built:
+        model = build_model(case, built)
+    steps = options.step or [step_count(duration=case.simulation.duration, dt=model.dt)]
+    if not Path(options.output).is_dir():
+        return _refuse(WheelrailError(f"{options.output}: no such folder; make it first"))
+    with progress_bar("run") as reached:
+        files = draw_contact(
+            model,
+            options.output,
+            steps=steps,
+            animate=options.animate,
+            format=options.format,
+            stem=f"{Path(options.case).stem}_contact",
+            progress=reached,
+        )
+    for path in files:
+        print(path)
     return 0
 
 

@@ -41,6 +41,11 @@ class HertzContact:
     constant: float
 
     @property
+    def area(self) -> float:
+        """Area of the contact ellipse in m2."""
+        return math.pi * self.semi_axis_x * self.semi_axis_y
+
+    @property
     def stiffness(self) -> float:
         """Tangent stiffness 3 P / (2 d) in N/m (Pieringer 2011, eq. 2.20)."""
         return 1.5 * self.load / self.approach

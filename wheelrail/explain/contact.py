@@ -29,6 +29,16 @@ def explain_contact(case: Case, hertz: HertzContact, warnings: list[str]) -> lis
             f"bedding                   k' = {bedding * 1e-9:.4g} GN/m2, R' = {radius:.4g} m: load, length and "
             "approach of Hertz for every load"
         )
+    if contact.normal == "half-space":
+        elements = hertz.area / (case.simulation.dx * contact.dy)
+        grid = round(contact.length / case.simulation.dx), round(contact.width / contact.dy)
+        lines.append(
+            f"potential contact area    {grid[0]} x {grid[1]} elements of {case.simulation.dx * 1e3:g} x "
+            f"{contact.dy * 1e3:g} mm; about {elements:.0f} in contact at the preload"
+        )
+    if contact.tangential != "none":
+        friction = "" if case.friction is None else f", friction {case.friction.coefficient:g}"
+        lines.append(f"tangential                {contact.tangential}{friction}")
     if contact.length is not None and (contact.normal == "winkler" or contact.prefilter != "none"):
         half = 0.5 * (contact.length - case.simulation.dx)
         grows = (half / hertz.semi_axis_x) ** 3
@@ -56,9 +66,10 @@ def explain_what_has_no_effect(case: Case) -> list[str]:
         parts = [name for name in ("friction", "creepage") if getattr(case, name) is not None]
         if parts:
             lines.append(f"[{'], ['.join(parts)}]: there is no tangential contact model")
+    unused = () if case.contact.normal == "half-space" else ("dy", "width")
     lines += [
         f"contact.{key}: only used by a three-dimensional contact model"
-        for key in ("dy", "width")
+        for key in unused
         if getattr(case.contact, key) is not None
     ]
     if case.contact.lateral_shift:

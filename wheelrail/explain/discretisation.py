@@ -41,7 +41,7 @@ def explain_grid(case: Case, hertz: HertzContact, warnings: list[str]) -> list[s
 
 
 def explain_cost(
-    case: Case, wheel: RigidWheel | None, track: DiscreteTrack | None, greens: MovingGreens | None
+    case: Case, hertz: HertzContact, wheel: RigidWheel | None, track: DiscreteTrack | None, greens: MovingGreens | None
 ) -> list[str]:
     """Return the lines on arithmetic and memory traffic per step."""
     simulation = case.simulation
@@ -61,6 +61,12 @@ def explain_cost(
         states = 2 * len(wheel.mass_matrix)
         operations += 2.0 * states * (states + 2)
     nodes = 1 if case.contact.length is None else round(case.contact.length / simulation.dx)
+    if case.contact.normal == "half-space":
+        # Two dense solves of k and two of up to 2 k unknowns, k the elements in contact.
+        k = hertz.area / (simulation.dx * case.contact.dy)
+        sizes = [k, k] if case.contact.tangential != "transient" else [k, k, 2.0 * k, 2.0 * k]
+        operations += sum(2.0 / 3.0 * size**3 for size in sizes)
+        moved += sum(24.0 * size**2 for size in sizes)
     operations += (20.0 * nodes * _ITERATIONS) if case.contact.normal == "winkler" else 2.0 * nodes + 10.0 * _ITERATIONS
     moved += 8.0 * nodes * (len(case.excitation) + 1)
     per_second = 1.0 / dt

@@ -32,6 +32,11 @@ def explain_equations(case: Case, wheel: RigidWheel | None, track: DiscreteTrack
         lines += [_equation("xi_R(a) = 0", "rigid track")]
     if case.contact.normal == "winkler":
         lines += [_equation("F = k' integral max(0, d + r(x) - x^2 / (2 R')) dx", "Pieringer 2011, eqs. 3.23 to 3.30")]
+    elif case.contact.normal == "half-space":
+        lines += [
+            _equation("h - d + A33 p >= 0, p >= 0, their product 0", "Pieringer 2011, eqs. 3.33 to 3.42 (NORM)"),
+            "    with h = x^2 / (2 R_w) + y^2 / (2 R_y) - r(x), F the sum of p over the elements",
+        ]
     else:
         filters = {
             "none": "r at the nominal contact point",
@@ -42,7 +47,25 @@ def explain_equations(case: Case, wheel: RigidWheel | None, track: DiscreteTrack
             _equation("F = C_H max(0, d + r)^1.5", "Pieringer 2011, eq. 2.19"),
             f"    with {filters[case.contact.prefilter]}",
         ]
-    return [*lines, "Vertical direction only. The equation for d(a) is solved by Newton's method with a safeguard."]
+    lines += _tangential_equations(case)
+    if case.contact.normal == "half-space":
+        return [*lines, "d(a) and p are solved together in Kalker's active set iteration."]
+    return [*lines, "The equation for d(a) is solved by Newton's method with a safeguard."]
+
+
+def _tangential_equations(case: Case) -> list[str]:
+    match case.contact.tangential:
+        case "none":
+            return ["Vertical direction only."]
+        case "linear":
+            return [_equation("F1 = -G a b C11 xi, F2, M3 alike", "Kalker's linear theory, no friction limit")]
+        case "fastsim":
+            return [_equation("u = L p along strips, |p| <= mu p3", "FASTSIM, Kalker 1982")]
+    return [
+        _equation("S = A p + W - u'(a - 1), W = (xi - y phi, eta + x phi) dx", "Pieringer 2011, eqs. 3.43 to 3.54"),
+        "    with S = 0 where |p| < mu p3, else p against S; u' carries the tractions of the step before",
+        "    creepages xi, eta, phi: rail relative to wheel over v, so positive ones give negative forces on the rail",
+    ]
 
 
 def _equation(text: str, remark: str) -> str:
@@ -56,6 +79,10 @@ def explain_sources(case: Case, track: DiscreteTrack | None) -> list[str]:
         "(equation numbers above)",
         "Johnson 1985, Contact mechanics, section 4.2 (Hertz contact)",
     ]
+    if case.contact.normal == "half-space" or case.contact.tangential != "none":
+        lines.append(
+            "Kalker 1990, Three-dimensional elastic bodies in rolling contact (NORM, TANG, creepage coefficients)"
+        )
     if track is not None:
         lines.append(
             "Nordborg 2002, Wheel/rail noise generation due to nonlinear effects and parametric excitation, "

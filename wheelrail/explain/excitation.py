@@ -52,4 +52,5 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
             filtered = case.contact.normal == "winkler" or case.contact.prefilter != "none"
             if "2 dx" in note and not (filtered and 2.0 * dx < hertz.semi_axis_x):
                 warnings.append(f"excitation #{number}: {note}")
-    return lines or ["none: smooth wheel and rail; only the track's bays excite"]
+    bays = "; only the track's bays excite" if case.track.model != "rigid" else ""
+    return lines or [f"none: smooth wheel and rail{bays}"]

@@ -57,7 +57,7 @@ def explain(case: Case) -> str:
         ("Contact", explain_contact(case, hertz, warnings)),
         ("Frequencies", explain_frequencies(case, moving, track, hertz)),
         ("Excitation", explain_excitation(case, hertz, warnings)),
-        ("Cost", explain_cost(case, moving, track, greens)),
+        ("Cost", explain_cost(case, hertz, moving, track, greens)),
         ("Without effect", explain_what_has_no_effect(case)),
         ("Warnings", [f"! {line}" for line in warnings] or ["none"]),
         ("Sources", explain_sources(case, track)),
