@@ -45,6 +45,7 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
         normal_contact_model=escape(str(start["normal_contact_model"])),
         tangential_contact_model=escape(str(start["tangential_contact_model"])),
         coupling=escape(str(start["coupling"])),
+        without_effect=_without_effect(str(start["tangential_contact_model"])),
         inputs=_table("input", start),
         outputs=_table("output", start),
         parameters=_table("parameter", start),
@@ -52,6 +53,18 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
         constants=_table("constant", start),
         case_text=escape(case_text),
     )
+
+
+def _without_effect(tangential: str) -> str:
+    """Say which ports this FMU accepts or shows although its model has no use for them."""
+    inputs = ["wheel_force_x", "wheel_force_y", "wheel_y", "lateral_shift", "lateral_position", "balance"]
+    outputs = ["wheel_disp_x", "wheel_disp_y", "rail_disp_x", "rail_disp_y"]
+    if tangential == "none":
+        inputs += ["creepage_x", "creepage_y", "creepage_spin", "friction_coefficient"]
+        outputs += ["force_x", "force_y", "force_x_mean", "force_y_mean"]
+        outputs += ["moment_spin", "slip_fraction", "friction_power"]
+    accepted, zero = (", ".join(f"<code>{name}</code>" for name in names) for names in (inputs, outputs))
+    return f"Its model has no use for {accepted}, which have no effect; {zero} read 0."
 
 
 def _table(role: str, start: Mapping[str, Any]) -> str:

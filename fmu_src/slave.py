@@ -212,7 +212,7 @@ class Fmi2Slave:
             elif variable.role == "parameter":
                 parameters[variable.name] = _model_value(variable, value)
             else:
-                raise PortError(f"{variable.name} = {value!r} is refused: it is an {variable.role}, not to be set.")
+                raise PortError(f"{variable.name} = {value!r} is refused: it can not be set ({variable.role}).")
         if parameters and self._started:
             # Hosts set all start values again after a reset only; a change in the middle of a run would be lost.
             name, value = next(iter(parameters.items()))

@@ -291,7 +291,7 @@ _OUTPUTS = (
         "friction_power",
         "output",
         "Real",
-        "frictional power, sum of traction times slip velocity over the contact",
+        "frictional power, sum of traction times slip velocity over the contact, balanced with energy over a step",
         "W",
         "Power",
         nominal=1e3,

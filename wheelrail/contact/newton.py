@@ -55,7 +55,8 @@ def solve_approach(
     """
     if rhs - weight * touch <= 0.0:
         # Out of contact: F = 0 and the bodies separate. (With weight 0, no force is asked for: they just touch.)
-        return (rhs / weight if weight > 0.0 else touch), 0.0, 0.0, 0, 0.0
+        # A pulling force can't be had at all, which the residual says.
+        return (rhs / weight if weight > 0.0 else touch), 0.0, 0.0, 0, float(weight == 0.0 and rhs < 0.0)
     # The solution lies right of first touch; with weight 0 the upper bound is not known yet.
     low = touch
     high = rhs / weight if weight > 0.0 else float("inf")

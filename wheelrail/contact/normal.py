@@ -91,7 +91,8 @@ def solve_normal(problem: NormalProblem, guess: NDArray | None = None) -> Normal
     lowest = int(np.argmin(h))
     if rhs - weight * h[lowest] <= 0.0:  # no contact: the approach is that of free bodies
         approach = rhs / weight if weight > 0.0 else float(h[lowest])
-        return NormalState(np.zeros(len(h)), np.zeros(0, dtype=int), approach, 0.0, 0.0, 0, 0.0)
+        residual = float(weight == 0.0 and rhs < 0.0)  # a pulling force can't be had
+        return NormalState(np.zeros(len(h)), np.zeros(0, dtype=int), approach, 0.0, 0.0, 0, residual)
     contact = np.array([lowest]) if guess is None or len(guess) == 0 else guess
     area, table = half_space.element_area, half_space.coefficients.a33.ravel()
     pressure = np.zeros(len(h))

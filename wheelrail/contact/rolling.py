@@ -94,7 +94,10 @@ def friction_work(
 
     Each particle's traction, the mean of before and after, times its slip; particles that have just left the contact
     count with what they still had. So defined it balances energy exactly: in steady rolling it is force times creepage
-    times distance on any grid. (With the traction after the step alone, 40 % are missing at 87 elements and 0.1 %.)
+    times distance on any grid. (With the traction after the step alone, 40 % are missing at 87 elements and
+    0.1 %.) A single step of a violent transient can come out negative, since a traction may turn round within it; sums
+    over some steps do not. What particles still hold when they leave the contact is counted there. With spin, the rigid
+    shift taken where the step ends makes it act dx / 2 off its mean.
 
     Parameters
     ----------

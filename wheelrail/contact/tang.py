@@ -39,6 +39,8 @@ def solve_tang(problem: TangentialProblem, guess: NDArray | None = None) -> Tang
     TangDidNotConverge
     """
     k, g = len(problem.contact), problem.bound
+    if k == 0:
+        return TangentialState(np.zeros((2, 0)), np.zeros((2, 0)), np.zeros(0, dtype=bool), 0, 0.0)
     A, h = influence_matrix(problem), problem.shift
     slipping = np.zeros(k, dtype=bool)  # step 1
     p = np.zeros((2, k)) if guess is None else guess.copy()

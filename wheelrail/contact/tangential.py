@@ -128,8 +128,8 @@ def solve_tangential(
         With a residual above `TOLERANCE` only if rounding forbids more.
     """
     k, g = len(problem.contact), problem.bound
-    if k == 0:
-        return TangentialState(np.zeros((2, 0)), np.zeros((2, 0)), np.zeros(0, dtype=bool), 0, 0.0)
+    if k == 0 or not np.any(g > 0.0):  # nothing to hold: everything slides freely
+        return TangentialState(np.zeros((2, k)), problem.shift.copy(), np.ones(k, dtype=bool), 0, 0.0)
     symmetric = matrix is None
     A = influence_matrix(problem) if matrix is None else matrix
     h = problem.shift

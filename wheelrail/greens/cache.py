@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import platformdirs
+from threadpoolctl import threadpool_limits
 
 from ..numerics.array_file import ArrayFileError, read_arrays, write_arrays
 from .moving import ENERGY_TOLERANCE, LONGEST_HORIZON, MARGIN_BAYS, MovingGreens, PeriodicTrack, compute_moving_greens
@@ -116,7 +117,9 @@ def cached_moving_greens(
         return found
     key, content = _key(track, {"speed": speed, "dx": dx, "memory": memory})
     path = cache_folder() / f"{key}{_SUFFIX}"
-    greens = compute_moving_greens(track, speed=speed, dx=dx, memory=memory, progress=progress)
+    # One thread: its products are too small for more, and the numbers must not depend on the machine's cores.
+    with threadpool_limits(1):
+        greens = compute_moving_greens(track, speed=speed, dx=dx, memory=memory, progress=progress)
     scalars = {"dx": greens.dx, "dt": greens.dt, "horizon": greens.horizon}
     arrays = {
         "values": greens.values,

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ..case import Case
 from ..contact.bedding import WinklerBedding
@@ -102,6 +103,11 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
     WheelrailError
         If the case asks for what its parts can't give together.
     """
+    with threadpool_limits(1):  # the numbers must not depend on the machine's cores
+        return _build(case, progress)
+
+
+def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
     simulation = case.simulation
     dt = simulation.dx / simulation.speed
     report: dict[str, Any] = {}

@@ -254,6 +254,7 @@ class CoSimulation:
             self.warnings.append(
                 f"the contact solution at step {self.steps} has a relative residual of {residual:.2g}, "
                 f"above {RESIDUAL_LIMIT:g}; the force of this communication step is not reliable"
+                + (" (a pulling load has no equilibrium)" if self._inputs.wheel_force_z < 0.0 else "")
             )
 
     def output(self, name: str) -> float | int | bool:

@@ -7,8 +7,11 @@ Pieringer 2011, section 3.2). In coupling by displacement it follows from the wh
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from ..errors import WheelrailError
 from .inputs import Inputs
 from .model import Model
 from .state import HEAD, OFFSET, RAIL, STEP, WHEEL, State
@@ -58,7 +61,12 @@ def start(model: Model, inputs: Inputs) -> State:
         if wheel is not None:
             steady = np.linalg.solve(np.eye(len(wheel.beta)) - wheel.phi, wheel.beta)
             state.wheel[:] = -solution.force * steady
-        block[WHEEL] = inputs.wheel_z - wheel_compliance * solution.force
+        block[WHEEL] = -wheel_compliance * solution.force
+    if not (math.isfinite(solution.force) and math.isfinite(solution.approach)):
+        raise WheelrailError(
+            f"there is no finite equilibrium at the start (load {inputs.wheel_force_z!r} N, "
+            f"wheel_z {inputs.wheel_z!r} m, roughness_scale {model.parameters.roughness_scale!r})"
+        )
     store_solution(state, solution)
     if model.tangential is not None:
         friction = model.parameters.friction_coefficient

@@ -147,7 +147,8 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     force = solution.force
     if not (math.isfinite(force) and math.isfinite(solution.approach)):
         raise WheelrailError(
-            f"the contact force is not finite at step {number} (load {load!r} N, wheel_z {inputs.wheel_z!r} m)"
+            f"the contact force is not finite at step {number} (load {load!r} N, wheel_z {inputs.wheel_z!r} m, "
+            f"roughness_scale {model.parameters.roughness_scale!r})"
         )
     # Wheel and rail are of one material: the tangential contact does not act back on the normal one.
     tangential = None
@@ -164,12 +165,12 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     # Nothing fails from here on.
     rail = rail_known + rail_first * force
     if wheel is not None:
-        block[WHEEL] = wheel_known + wheel_first * (load - force) + (0.0 if by_load else inputs.wheel_z)
+        block[WHEEL] = wheel_known + wheel_first * (load - force)
         state.wheel[:] = wheel.phi @ state.wheel + wheel.beta * (load - force)
     elif by_load:
         block[WHEEL] = solution.approach + rail - offset
     else:
-        block[WHEEL] = inputs.wheel_z
+        block[WHEEL] = 0.0  # the vehicle moves it, it has no dynamics of its own
     block[RAIL] = rail
     store_solution(state, solution)
     store_tangential(model, state, tangential)
