@@ -93,6 +93,8 @@ def build_fmu(case: Case, output_dir: str | Path, progress: Callable[[float], No
     BuildError
         If PythonFMU is missing or of another version, or the FMU can't be written.
     """
+    if Path(output_dir).is_file():
+        raise BuildError(f"{output_dir}: is a file; --output takes the folder that the FMU is to be written to.")
     binaries = _binaries()
     licences = _licences()
     model_bytes = _model_bytes(case, progress)

@@ -59,6 +59,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(devnull, sys.stdout.fileno())
         os.close(devnull)
         return _BROKEN_PIPE
+    except OSError as error:
+        return _refuse(error)
 
 
 def _parser() -> argparse.ArgumentParser:
