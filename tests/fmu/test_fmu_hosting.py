@@ -232,9 +232,13 @@ instance.slave.freeInstance()
 
 
 def test_folder_with_a_space(quick_path: Path, tmp_path: Path) -> None:
-    instance = UnpackedFmu(quick_path, tmp_path / "with space").instance()
-    instance.step(1e-3)
-    instance.close()
+    forces = []
+    for folder in ("plain", "with space"):
+        instance = UnpackedFmu(quick_path, tmp_path / folder).instance()
+        instance.step(1e-3)
+        forces.append(instance.get("force_z"))
+        instance.close()
+    assert forces[0] == forces[1] > 0.0
 
 
 @pytest.mark.parametrize("letter", ["é", "#", "%"])

@@ -74,6 +74,7 @@ def test_records_of_one_and_two_samples_can_be_drawn():
         time, position, force = np.arange(n) * 1e-4, np.arange(n) * DX, np.full(n, 65e3)
         figure = force_figure(time=time, position=position, force=force, load=65e3, sleeper_spacing=SPACING, title="")
         FigureCanvasAgg(figure).draw()
+        assert any(len(line.get_xdata()) == n for axis in figure.axes for line in axis.lines)
 
 
 def test_spectrum_has_the_level_of_a_sine_in_its_band():
