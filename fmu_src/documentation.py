@@ -45,7 +45,10 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
         normal_contact_model=escape(str(start["normal_contact_model"])),
         tangential_contact_model=escape(str(start["tangential_contact_model"])),
         coupling=escape(str(start["coupling"])),
-        without_effect=_without_effect(str(start["tangential_contact_model"])),
+        without_effect=_without_effect(
+            str(start["tangential_contact_model"]), wheel=str(start["wheel_model"]), track=str(start["track_model"])
+        ),
+        guiding=_guiding(str(start["tangential_contact_model"]), wheel=str(start["wheel_model"])),
         inputs=_table("input", start),
         outputs=_table("output", start),
         parameters=_table("parameter", start),
@@ -55,16 +58,37 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
     )
 
 
-def _without_effect(tangential: str) -> str:
+def _without_effect(tangential: str, *, wheel: str, track: str) -> str:
     """Say which ports this FMU accepts or shows although its model has no use for them."""
-    inputs = ["wheel_force_x", "wheel_force_y", "wheel_y", "lateral_shift", "lateral_position", "balance"]
-    outputs = ["wheel_disp_x", "wheel_disp_y", "rail_disp_x", "rail_disp_y"]
+    inputs, outputs = ["wheel_y", "lateral_shift", "lateral_position"], []
     if tangential == "none":
         inputs += ["creepage_x", "creepage_y", "creepage_spin", "friction_coefficient"]
         outputs += ["force_x", "force_y", "force_x_mean", "force_y_mean"]
         outputs += ["moment_spin", "slip_fraction", "friction_power"]
+    if tangential == "none" or wheel != "flexible":
+        inputs += ["wheel_force_x", "wheel_force_y", "balance"]
+        outputs += ["wheel_disp_x", "wheel_disp_y"]
+    if tangential == "none" or track != "waveguide":
+        outputs += ["rail_disp_x", "rail_disp_y"]
     accepted, zero = (", ".join(f"<code>{name}</code>" for name in names) for names in (inputs, outputs))
-    return f"Its model has no use for {accepted}, which have no effect; {zero} read 0."
+    text = f"Its model has no use for {accepted}, which have no effect"
+    return f"{text}; {zero} read 0." if outputs else f"{text}."
+
+
+def _guiding(tangential: str, *, wheel: str) -> str:
+    """Say what holds a flexible wheel against the tangential contact forces."""
+    if tangential == "none" or wheel != "flexible":
+        return ""
+    return (
+        "<p>The wheel feels the vehicle's forces less those of the contact. With <code>balance = true</code> the "
+        "steady tangential forces at the start are taken as the vehicle's guiding forces, and "
+        "<code>wheel_force_x</code>, <code>wheel_force_y</code> count from their values at the start: the wheel's "
+        "rigid body is at rest and does not run away. With <code>false</code> they are the guiding forces themselves, "
+        "and the wheel starts where its suspension holds the difference. With <code>coupling = displacement</code> the "
+        "vehicle holds the wheel and none of this acts. The slip is made of the creepages and of what wheel and rail "
+        "do by their own dynamics (<code>wheel_disp_x</code> to <code>rail_disp_y</code>): the vehicle's own lateral "
+        "motion belongs to <code>creepage_y</code>, not to <code>wheel_y</code>.</p>"
+    )
 
 
 def _table(role: str, start: Mapping[str, Any]) -> str:

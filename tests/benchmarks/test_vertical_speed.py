@@ -81,10 +81,10 @@ def model() -> Model:
 def pull(model: Model, forces: np.ndarray, number: int) -> float:
     """Rail displacement as eq. 3.15 is written: the sum over all past forces, each with its own function."""
     assert model.track is not None
-    samples = model.track.shape[1]
+    samples = model.track.samples
     ages = np.arange(min(samples, number + 1))
-    rows = (model.start_index + number - ages) % len(model.track)
-    return float(model.track[rows, ages] @ forces[number - ages])
+    rows = (model.start_index + number - ages) % model.track.positions
+    return float(model.track.values[rows, 0, 0, ages] @ forces[number - ages])
 
 
 def test_green_functions(model: Model, solve_400: float) -> None:
@@ -102,7 +102,7 @@ def test_green_functions(model: Model, solve_400: float) -> None:
     warm = timed(lambda: cached_moving_greens(track, speed=SPEED, dx=1e-3))
     print(
         f"moving Green's functions from the cache: {warm:.3f} s, {seconds / warm:.0f} times faster than cold "
-        f"({model.track.shape[0]} x {model.track.shape[1]} samples, {model.track.nbytes / 1e6:.0f} MB)"
+        f"({model.track.positions} x {model.track.samples} samples, {model.track.values.nbytes / 1e6:.0f} MB)"
     )
 
 
@@ -117,7 +117,7 @@ def test_step(model: Model, solve_400: float) -> None:
 
     run()
     seconds = timed(run) / count
-    forces = np.full(model.track.shape[1] + 10, 65e3) if model.track is not None else np.zeros(1)
+    forces = np.full(model.track.samples + 10, 65e3) if model.track is not None else np.zeros(1)
     pulled = timed(lambda: [pull(model, forces, len(forces) - 1) for _ in range(50)]) / 50
     print(
         f"\nvertical step (2-dof wheel, discrete track, Winkler): {1e6 * seconds:.0f} us = "

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from wheelrail.interaction.tracks import TrackModel, track_receptance
+from wheelrail.interaction.wheels import WheelModel, vertical_receptance
 from wheelrail.track.discrete import DiscreteTrack
-from wheelrail.wheel.rigid import RigidWheel
 
 __all__ = ["interaction_peaks", "pinned_pinned_frequency"]
 
@@ -47,7 +48,7 @@ def pinned_pinned_frequency(track: DiscreteTrack) -> float | None:
 
 
 def interaction_peaks(
-    wheel: RigidWheel | None, track: DiscreteTrack | None, *, contact_stiffness: float, x: float, highest: float
+    wheel: WheelModel | None, track: TrackModel | None, *, contact_stiffness: float, x: float, highest: float
 ) -> list[float]:
     """Find where roughness makes the largest contact force, linearised: peaks of 1 / |a_W + a_R + 1 / k_H|.
 
@@ -56,8 +57,8 @@ def interaction_peaks(
 
     Parameters
     ----------
-    wheel : RigidWheel or None
-    track : DiscreteTrack or None
+    wheel, track : wheel and track models or None
+        From `wheelrail.interaction.build`.
     contact_stiffness : float
         k_H in N/m.
     x : float
@@ -74,9 +75,9 @@ def interaction_peaks(
     def size(frequency: NDArray) -> NDArray:
         total = np.full(len(frequency), 1.0 / contact_stiffness, dtype=complex)
         if wheel is not None:
-            total += wheel.receptance(frequency)
+            total += vertical_receptance(wheel, frequency)
         if track is not None:
-            total += track.receptance(x, [x], frequency)[:, 0]
+            total += track_receptance(track, x, frequency)
         return 1.0 / np.abs(total)
 
     return _peaks(size, np.geomspace(_LOWEST, highest, 500), least=1.05)

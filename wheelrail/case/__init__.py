@@ -1,8 +1,9 @@
 """The case file: one TOML file that describes a run or an FMU.
 
 Read one with :func:`load_case`; every fault of a file comes in one
-:class:`~wheelrail.errors.CaseError`. The keys, their units and ranges are in :mod:`wheelrail.case.sections` and
-:mod:`wheelrail.case.excitations`, and in :func:`json_schema`.
+:class:`~wheelrail.errors.CaseError`. The keys, their units and ranges are in :mod:`wheelrail.case.sections`,
+:mod:`wheelrail.case.wheel_sections`, :mod:`wheelrail.case.track_sections` and :mod:`wheelrail.case.excitations`, and in
+:func:`json_schema`.
 """
 
 from wheelrail.case.definition import Case

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,9 @@ from wheelrail.case.faults import (
     shown_value,
 )
 from wheelrail.case.presets import presets_of
+from wheelrail.case.structure_rules import WHEEL_SOURCES
+from wheelrail.case.track_sections import RAIL_SECTIONS
+from wheelrail.case.wheel_sections import WHEEL_SECTIONS
 
 __all__ = ["CaseCheck"]
 
@@ -123,6 +126,14 @@ class CaseCheck:
                 f'{where}: is for {tag} = "{preset.values[tag]}", but {section}.{tag} = {shown_value(table[tag])}'
             )
             return
+        kind = next((key for key in ("support", *WHEEL_SOURCES) if key in preset.values), "")
+        others = [key for key in WHEEL_SOURCES if key in table and key != kind] if kind in WHEEL_SOURCES else []
+        if others or (kind == "support" and table.get(kind, preset.values[kind]) != preset.values[kind]):
+            self._incomplete.add((section,))
+            given = f"{others[0]} is given" if others else f"{section}.{kind} = {shown_value(table[kind])}"
+            its = kind if others else f"{kind} = {shown_value(preset.values[kind])}"
+            self.faults.append(f"{where}: is for {its}, but {given}; give the keys themselves")
+            return
         for key, value in preset.values.items():
             table.setdefault(key, value)
 
@@ -191,16 +202,29 @@ class CaseCheck:
     def _check_files(self) -> None:
         excitations = self.data.get("excitation", [])
         for index, table in enumerate(excitations):
-            if not isinstance(table, dict) or table.get("type") not in ("measured", "spectrum"):
-                continue
-            file = table.get("file")
-            if isinstance(file, str) and file:
-                path = self.folder / file
-                where = f"{location(('excitation', index, 'file'))} = {shown_value(file)}"
-                if path.is_dir():
-                    self.faults.append(f"{where}: is a folder; give a data file")
-                elif not path.is_file():
-                    self.faults.append(f"{where}: no such file; looked for {path.absolute()}")
+            if isinstance(table, dict) and table.get("type") in ("measured", "spectrum"):
+                self._check_file(("excitation", index, "file"), table.get("file"), ())
+        for section, key, presets in (
+            ("wheel", "section", WHEEL_SECTIONS),
+            ("wheel", "modes", ()),
+            ("wheel", "receptances", ()),
+            ("track", "section", RAIL_SECTIONS),
+        ):
+            table = self.data.get(section)
+            if isinstance(table, dict) and table.get("model") in ("flexible", "waveguide"):
+                self._check_file((section, key), table.get(key), presets)
+
+    def _check_file(self, loc: Place, file: object, presets: Sequence[str]) -> None:
+        """Check that a data file exists, unless its name is that of something that comes with the program."""
+        if not isinstance(file, str) or not file or file.lower() in presets:
+            return
+        path = self.folder / file
+        where = f"{location(loc)} = {shown_value(file)}"
+        if path.is_dir():
+            self.faults.append(f"{where}: is a folder; give a data file")
+        elif not path.is_file():
+            known = f"{did_you_mean(file, presets)}it comes with the program ({in_words(presets)}) or is a file; "
+            self.faults.append(f"{where}: {known if presets else 'no such file; '}looked for {path.absolute()}")
 
 
 def _as_from_toml(value: Any) -> Any:

@@ -10,8 +10,8 @@ TAG_KEYS: dict[str, str] = {"wheel": "model", "track": "model", "contact": "norm
 """Key that says which table a section is."""
 
 LATER_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
-    ("wheel", "model"): ("flexible",),
-    ("track", "model"): ("waveguide",),
+    ("wheel", "model"): (),
+    ("track", "model"): (),
     ("contact", "normal"): (),
     ("contact", "tangential"): (),
     ("friction", "law"): ("kraft", "polach", "table"),

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from wheelrail.case.structure_rules import structure_faults
+
 __all__ = ["cross_faults", "excitation_label", "shown"]
 
 GRID_TOLERANCE = 1e-6
@@ -41,9 +43,10 @@ def cross_faults(data: Mapping[str, Any]) -> list[str]:
     dx = _positive(simulation, "dx")
     if dx is not None:
         faults += _start_faults(simulation, dx)
-        if track.get("model") == "discrete":
+        if "discrete" in (track.get("model"), track.get("support")):
             faults += _spacing_faults(track, dx)
         faults += _odd_faults("contact.length", _positive(contact, "length"), "simulation.dx", dx)
+    faults += structure_faults(_table(data, "wheel"), track)
     faults += _odd_faults("contact.width", _positive(contact, "width"), "contact.dy", _positive(contact, "dy"))
     faults += _prefilter_faults(contact)
     faults += _tangential_faults(data)

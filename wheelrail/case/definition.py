@@ -10,18 +10,10 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from wheelrail.case.consistency import cross_faults
 from wheelrail.case.excitations import Excitation
-from wheelrail.case.fields import Section
-from wheelrail.case.sections import (
-    Contact,
-    Creepage,
-    Friction,
-    Load,
-    Output,
-    Simulation,
-    Track,
-    Wheel,
-    as_tuple,
-)
+from wheelrail.case.fields import Section, as_tuple
+from wheelrail.case.sections import Contact, Creepage, Friction, Load, Output, Simulation
+from wheelrail.case.track_sections import Track
+from wheelrail.case.wheel_sections import Wheel
 
 __all__ = ["Case"]
 

@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 from wheelrail.case.choices import LATER_KEYS, TAG_KEYS, not_available
 from wheelrail.case.consistency import excitation_label
 from wheelrail.case.definition import Case
-from wheelrail.case.fields import unit_of
+from wheelrail.case.fields import allowed_words, unit_of
 from wheelrail.case.presets import presets_of
 
 __all__ = [
@@ -239,6 +239,9 @@ def allowed_values(field: FieldInfo, *, item: bool = False) -> str:
     str
         For example ``a number > 0 (N/m)``.
     """
+    words = allowed_words(field)
+    if words and not item:
+        return words
     choices = _choices(field)
     outer = get_origin(field.annotation)
     is_list = outer is tuple and not item

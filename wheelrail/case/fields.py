@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["Section", "quantity", "unit_of"]
+__all__ = ["Section", "allowed_words", "as_tuple", "quantity", "unit_of"]
 
 
 class Section(BaseModel):
@@ -35,6 +35,17 @@ def quantity(description: str, unit: str, default: Any = ..., **bounds: Any) -> 
         To be assigned to an annotated class attribute.
     """
     return Field(default=default, description=description, json_schema_extra={"unit": unit}, **bounds)
+
+
+def as_tuple(value: object) -> object:
+    """Turn the list that TOML gives into a tuple, which an immutable table needs."""
+    return tuple(value) if isinstance(value, list) else value
+
+
+def allowed_words(field: Any) -> str | None:
+    """Return what a key may be where its type doesn't say it well: ``allowed`` in its extra."""
+    extra = field.json_schema_extra
+    return extra.get("allowed") if isinstance(extra, dict) else None
 
 
 def unit_of(field: Any) -> str | None:

@@ -8,6 +8,7 @@ from typing import Any
 from wheelrail.case.choices import TAG_KEYS
 from wheelrail.case.definition import Case
 from wheelrail.case.presets import Preset, presets_of
+from wheelrail.case.structure_rules import WHEEL_SOURCES
 
 __all__ = ["json_schema"]
 
@@ -48,6 +49,7 @@ def _tidy(node: Any) -> None:
     if not isinstance(node, dict):
         return
     node.pop("discriminator", None)
+    node.pop("allowed", None)
     if "default" in node and node["default"] is None:
         del node["default"]
     options = node.get("anyOf")
@@ -97,5 +99,7 @@ def _state_rules(definitions: dict[str, Any]) -> None:
     definitions["Measured"].update({"if": on_wheel, "then": {"properties": {"beyond_end": False}}})
     definitions["WinklerContact"]["properties"]["prefilter"]["enum"] = ["none"]
     definitions["Output"]["properties"]["record"]["uniqueItems"] = True
+    flexible = definitions["FlexibleWheel"]
+    flexible["anyOf"][-1]["oneOf"] = [{"required": [key]} for key in WHEEL_SOURCES]
     filtered = {"properties": {"prefilter": {"enum": ["average", "winkler"]}}, "required": ["prefilter"]}
     definitions["HertzContact"].update({"if": filtered, "then": {"required": ["length"]}})

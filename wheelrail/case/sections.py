@@ -1,4 +1,4 @@
-"""The tables of a case file except ``[[excitation]]``: keys, units and ranges."""
+"""The tables of a case file except wheel, track and ``[[excitation]]``: keys, units and ranges."""
 
 from __future__ import annotations
 
@@ -6,32 +6,19 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
-from wheelrail.case.fields import Section, quantity
+from wheelrail.case.fields import Section, as_tuple, quantity
 
 __all__ = [
     "OUTPUT_NAMES",
     "Contact",
     "Creepage",
-    "DiscreteTrack",
     "Friction",
     "HertzContact",
     "Load",
     "Output",
-    "Rigid1DofWheel",
-    "Rigid2DofWheel",
-    "RigidTrack",
-    "RigidWheel",
     "Simulation",
-    "Track",
-    "Wheel",
     "WinklerContact",
-    "as_tuple",
 ]
-
-
-def as_tuple(value: object) -> object:
-    """Turn the list that TOML gives into a tuple, which an immutable table needs."""
-    return tuple(value) if isinstance(value, list) else value
 
 
 class Simulation(Section):
@@ -44,65 +31,10 @@ class Simulation(Section):
     first_sample: Literal["kept", "zero"] = Field(
         default="kept",
         description="First sample of the Green's functions: kept, the displacement in the step of the force itself, "
-        "with which force and displacement are solved together; zero, so that displacements follow from past forces "
-        "only, as the thesis has it in combined vertical and tangential runs",
-    )
-
-
-class RigidWheel(Section):
-    """``[wheel]`` without dynamics of its own: the quasi-static case."""
-
-    model: Literal["rigid"] = Field(description="Wheel model: no dynamics")
-    radius: float = quantity("Rolling radius", "m", gt=0)
-
-
-class Rigid1DofWheel(Section):
-    """``[wheel]`` as a mass on the primary suspension (Pieringer 2011, section 3.2.1)."""
-
-    model: Literal["rigid-1dof"] = Field(description="Wheel model: one mass on the primary suspension")
-    radius: float = quantity("Rolling radius", "m", gt=0)
-    mass: float = quantity("Wheel mass (half the wheelset)", "kg", gt=0)
-    suspension_stiffness: float = quantity("Stiffness of the primary suspension; 0 = unsprung mass", "N/m", ge=0)
-    suspension_damping: float = quantity("Damping of the primary suspension", "N s/m", ge=0)
-
-
-class Rigid2DofWheel(Section):
-    """``[wheel]`` as two masses; the small one at the contact stands for the wheel's flexibility."""
-
-    model: Literal["rigid-2dof"] = Field(description="Wheel model: wheel mass and a small mass at the contact")
-    radius: float = quantity("Rolling radius", "m", gt=0)
-    mass: float = quantity("Wheel mass (half the wheelset)", "kg", gt=0)
-    suspension_stiffness: float = quantity("Stiffness of the primary suspension; 0 = unsprung mass", "N/m", ge=0)
-    suspension_damping: float = quantity("Damping of the primary suspension", "N s/m", ge=0)
-    contact_mass: float = quantity("Mass at the contact", "kg", gt=0)
-    contact_stiffness: float = quantity("Stiffness between the contact mass and the wheel mass", "N/m", gt=0)
-    contact_damping: float = quantity("Damping between the contact mass and the wheel mass", "N s/m", gt=0)
-
-
-class RigidTrack(Section):
-    """``[track]`` without dynamics of its own."""
-
-    model: Literal["rigid"] = Field(description="Track model: no dynamics")
-
-
-class DiscreteTrack(Section):
-    """``[track]`` as a Rayleigh-Timoshenko rail on discrete supports (Pieringer 2011, section 3.3.1)."""
-
-    model: Literal["discrete"] = Field(description="Track model: Timoshenko rail on pads, sleepers and ballast")
-    bending_stiffness: float = quantity("Bending stiffness EI of the rail", "N m2", gt=0)
-    shear_stiffness: float = quantity("Shear stiffness kappa G A of the rail", "N", gt=0)
-    mass_per_length: float = quantity("Mass per length of the rail", "kg/m", gt=0)
-    rotary_inertia: float = quantity("Rotary inertia per length rho I of the rail", "kg m", gt=0)
-    sleeper_spacing: float = quantity("Sleeper spacing; a multiple of dx", "m", gt=0)
-    bays: int = quantity("Number of sleeper bays of the modelled track", "1", ge=20, multiple_of=2)
-    elements_per_bay: int = quantity("Beam elements per sleeper bay", "1", ge=1)
-    pad_stiffness: float = quantity("Stiffness of one rail pad", "N/m", gt=0)
-    pad_damping: float = quantity("Damping of one rail pad", "N s/m", ge=0)
-    sleeper_mass: float = quantity("Sleeper mass per rail (half a sleeper)", "kg", gt=0)
-    ballast_stiffness: float = quantity("Ballast stiffness under half a sleeper", "N/m", gt=0)
-    ballast_damping: float = quantity("Ballast damping under half a sleeper", "N s/m", ge=0)
-    memory: float | None = quantity(
-        "Length of the moving Green's functions; left out: until they have decayed to a stated energy", "s", None, gt=0
+        "with which force and displacement are solved together (with a tangential contact model not that which couples "
+        "the vertical with another direction); zero, so that displacements follow from past forces only, as the thesis "
+        "has it in combined vertical and tangential runs: a contact that sticks can then run away from step to step, "
+        "and the compliance within the first sample is lost (of a wheel from receptances: that of all above them)",
     )
 
 
@@ -226,6 +158,4 @@ class Output(Section):
     )
 
 
-Wheel = Annotated[RigidWheel | Rigid1DofWheel | Rigid2DofWheel, Field(discriminator="model")]
-Track = Annotated[RigidTrack | DiscreteTrack, Field(discriminator="model")]
 Contact = Annotated[HertzContact | WinklerContact | HalfSpaceContact, Field(discriminator="normal")]

@@ -119,7 +119,13 @@ def friction_work(
 
 
 def roll(
-    half_space: HalfSpace, normal: NormalState, *, friction: float, shift: NDArray, previous: NDArray
+    half_space: HalfSpace,
+    normal: NormalState,
+    *,
+    friction: float,
+    shift: NDArray,
+    previous: NDArray,
+    compliance: NDArray | None = None,
 ) -> RollingState:
     """Do one step of transient rolling.
 
@@ -134,6 +140,8 @@ def roll(
         Rigid shift W, with the structural part of wheel and rail (eqs. 3.50 and 3.51), m.
     previous : ndarray, shape (2, n)
         Tractions of the step before, Pa.
+    compliance : ndarray, shape (2, 2), optional
+        How far rail and wheel give way to this step's force within the step, m/N: what the force adds to ``shift``.
 
     Returns
     -------
@@ -142,9 +150,12 @@ def roll(
     contact = normal.contact
     carried = half_space.carried_displacement(previous)
     problem = TangentialProblem(
-        half_space, contact, friction * normal.pressure[contact], shift[:, contact] - carried[:, contact]
+        half_space, contact, friction * normal.pressure[contact], shift[:, contact] - carried[:, contact], compliance
     )
     solution = solve_tangential(problem, previous[:, contact])
+    if compliance is not None:
+        force = half_space.element_area * solution.tractions.sum(axis=1)
+        shift = shift + (compliance @ force)[:, None]
     return _on_grid(half_space, contact, solution, shift=shift, previous=previous, carried=carried)
 
 

@@ -41,12 +41,16 @@ class TangentialProblem:
         Traction bounds g = mu p3 in Pa, > 0.
     shift : ndarray, shape (2, k)
         h = W - u' in m: rigid shift of rail against wheel in this step, less the displacement of the step before.
+    compliance : ndarray, shape (2, 2), optional
+        How far rail and wheel as a whole give way to the resultant force within the step, m/N; symmetric and positive
+        semi-definite. Left out: not at all.
     """
 
     half_space: HalfSpace
     contact: NDArray
     bound: NDArray
     shift: NDArray
+    compliance: NDArray | None = None
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,10 @@ class TangentialState:
 
 
 def influence_matrix(problem: TangentialProblem) -> NDArray:
-    """Matrix A of the contact elements, shape (2 k, 2 k); first all x, then all y components."""
+    """Matrix A of the contact elements, shape (2 k, 2 k); first all x, then all y components.
+
+    A compliance of rail and wheel adds the same displacement to all elements, for the sum of all tractions.
+    """
     k = len(problem.contact)
     pairs = problem.half_space.pairs(problem.contact, problem.contact)
     table = problem.half_space.coefficients
@@ -81,6 +88,8 @@ def influence_matrix(problem: TangentialProblem) -> NDArray:
     matrix[:k, :k] = table.a11.ravel().take(pairs)
     matrix[k:, k:] = table.a22.ravel().take(pairs)
     matrix[:k, k:] = matrix[k:, :k] = table.a12.ravel().take(pairs)
+    if problem.compliance is not None:
+        matrix.reshape(2, k, 2, k)[:] += (problem.half_space.element_area * problem.compliance)[:, None, :, None]
     return matrix
 
 

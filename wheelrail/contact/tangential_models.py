@@ -18,7 +18,7 @@ from .half_space import HalfSpace
 from .rolling import RollingState, rigid_shift, roll, steady_rolling
 from .solution import NormalSolution
 
-__all__ = ["CreepForceLaw", "Creepages", "TangentialModel", "TangentialSolution", "TransientRolling"]
+__all__ = ["CreepForceLaw", "Creepages", "Motion", "TangentialModel", "TangentialSolution", "TransientRolling"]
 
 
 class Creepages(NamedTuple):
@@ -27,6 +27,25 @@ class Creepages(NamedTuple):
     x: float
     y: float
     spin: float
+
+
+class Motion(NamedTuple):
+    """How rail and wheel as a whole move against each other in one step, beyond the creepages.
+
+    Attributes
+    ----------
+    x, y : float
+        Rail less wheel, by the forces of the steps before, m (Pieringer 2011, eqs. 3.50 and 3.51).
+    compliance : ndarray, shape (2, 2), or None
+        What the force of this step adds to it, m/N; None: nothing.
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    compliance: NDArray | None = None
+
+
+STANDSTILL = Motion()
 
 
 class TangentialSolution(NamedTuple):
@@ -83,7 +102,14 @@ class TangentialModel(Protocol):
         ...
 
     def step(
-        self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float, memory: NDArray
+        self,
+        normal: NormalSolution,
+        creepages: Creepages,
+        *,
+        friction: float,
+        dx: float,
+        memory: NDArray,
+        motion: Motion = STANDSTILL,
     ) -> TangentialSolution:
         """Solve one step; ``memory`` is that of the step before, shape (memory,)."""
         ...
@@ -135,7 +161,14 @@ class TransientRolling:
         )
 
     def step(
-        self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float, memory: NDArray
+        self,
+        normal: NormalSolution,
+        creepages: Creepages,
+        *,
+        friction: float,
+        dx: float,
+        memory: NDArray,
+        motion: Motion = STANDSTILL,
     ) -> TangentialSolution:
         """Solve one transient step."""
         del dx
@@ -144,15 +177,21 @@ class TransientRolling:
             return self._free()
         x, y, spin = creepages
         shift = rigid_shift(grid, creepage_x=x, creepage_y=y, creepage_spin=spin, distance=grid.dx)
+        shift[0] += motion.x
+        shift[1] += motion.y
         previous = memory[: 2 * grid.elements].reshape(2, -1)
-        return self._solution(roll(grid, field, friction=friction, shift=shift, previous=previous))
+        return self._solution(
+            roll(grid, field, friction=friction, shift=shift, previous=previous, compliance=motion.compliance)
+        )
 
 
 @dataclass(frozen=True)
 class CreepForceLaw:
     """A steady creep-force law on the contact ellipse of the step: ``fastsim`` or ``linear``.
 
-    ``linear`` is Kalker's linear theory, which knows no friction limit.
+    ``linear`` is Kalker's linear theory, which knows no friction limit. Steady laws hold for creepages that hardly
+    change while the wheel rolls by a contact length; so they take the vehicle's creepages alone, and their forces move
+    wheel and rail without the vibration acting back on them. Vibration in the slip needs transient rolling.
     """
 
     kind: str
@@ -173,10 +212,17 @@ class CreepForceLaw:
         return self.step(normal, creepages, friction=friction, dx=dx, memory=np.zeros(0))
 
     def step(
-        self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float, memory: NDArray
+        self,
+        normal: NormalSolution,
+        creepages: Creepages,
+        *,
+        friction: float,
+        dx: float,
+        memory: NDArray,
+        motion: Motion = STANDSTILL,
     ) -> TangentialSolution:
         """Evaluate the law."""
-        del memory
+        del memory, motion
         if normal.force <= 0.0 or not any(creepages) or (self.kind == "fastsim" and friction == 0.0):
             return NOTHING
         x, y, spin = creepages

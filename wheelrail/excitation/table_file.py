@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from wheelrail.errors import DataFileError
+from wheelrail.numerics.column_file import read_text
 
 __all__ = ["LENGTH_UNITS", "LEVEL_UNITS", "MAX_ROWS", "Table", "read_table"]
 
@@ -21,7 +22,6 @@ LEVEL_UNITS = {"db": 1.0}
 """Units of a level."""
 
 MAX_ROWS = 5_000_000
-_MAX_BYTES = 1_000_000_000
 _UNIT = re.compile(r"^(?P<name>.*?)\s*(?:\[\s*(?P<a>[^\]]*?)\s*\]|\(\s*(?P<b>[^)]*?)\s*\)|[\s_/](?P<c>[^\s_/]+))$")
 
 
@@ -49,30 +49,6 @@ class Table:
     values: np.ndarray
     lines: np.ndarray
     header_line: int
-
-
-def _text(path: Path) -> str:
-    try:
-        size = path.stat().st_size
-        if size > _MAX_BYTES:
-            raise DataFileError(
-                f"{path}: {size / 1e9:.1f} GB; at most {_MAX_BYTES / 1e9:.0f} GB are read. Cut the file."
-            )
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        raise DataFileError(f"{path}: there is no such file") from None
-    except IsADirectoryError:
-        raise DataFileError(f"{path}: this is a folder, not a file") from None
-    except (OSError, ValueError) as error:
-        raise DataFileError(f"{path}: can't be read: {getattr(error, 'strerror', None) or error}") from None
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise DataFileError(f"{path}: the text is in UTF-16; save it as UTF-8")
-    if b"\x00" in raw:
-        raise DataFileError(f"{path}: this is not a text file (it holds zero bytes)")
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return raw.decode("latin-1")  # instruments write the micro sign as one byte
 
 
 def _separator(header: str) -> str | None:
@@ -155,7 +131,7 @@ def read_table(path: Path | str, *, column_units: tuple[tuple[str, ...], ...]) -
     units: tuple[str, ...] = ()
     separator: str | None = None
     header_line = 0
-    for line, text in enumerate(io.StringIO(_text(path), newline=None), start=1):
+    for line, text in enumerate(io.StringIO(read_text(path), newline=None), start=1):
         text = text.strip(" \r\n") if separator == "\t" else text.strip()
         if not text or text.startswith("#"):
             continue

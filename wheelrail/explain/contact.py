@@ -39,6 +39,12 @@ def explain_contact(case: Case, hertz: HertzContact, warnings: list[str]) -> lis
     if contact.tangential != "none":
         friction = "" if case.friction is None else f", friction {case.friction.coefficient:g}"
         lines.append(f"tangential                {contact.tangential}{friction}")
+    moves = case.wheel.model == "flexible" or case.track.model == "waveguide"
+    if contact.tangential == "transient" and case.simulation.first_sample == "zero" and moves:
+        warnings.append(
+            "with first samples of zero a contact that sticks all over can swing from step to step up to full sliding, "
+            'without any physical cause: a smaller dx, a higher speed or simulation.first_sample = "kept" cure that'
+        )
     if contact.length is not None and (contact.normal == "winkler" or contact.prefilter != "none"):
         half = 0.5 * (contact.length - case.simulation.dx)
         grows = (half / hertz.semi_axis_x) ** 3

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from wheelrail.case import Case
 from wheelrail.contact.hertz import HertzContact
 from wheelrail.greens.moving import MovingGreens, horizon_of
+from wheelrail.greens.waveguide import HORIZON
 from wheelrail.interaction.build import memory_of
 from wheelrail.interaction.simulate import step_count
+from wheelrail.interaction.tracks import TrackModel
+from wheelrail.interaction.wheels import MeasuredWheel, WheelModel
 from wheelrail.track.discrete import DiscreteTrack
 from wheelrail.wheel.rigid import RigidWheel
 
@@ -36,30 +41,43 @@ def explain_grid(case: Case, hertz: HertzContact, warnings: list[str]) -> list[s
         f"sampling frequency        {1.0 / dt:.6g} Hz, Nyquist {0.5 / dt:.6g} Hz",
         f"shortest wavelength       {2e3 * dx:g} mm (2 dx), at this speed {0.5 / dt:.6g} Hz",
         f"duration                  {simulation.duration:g} s = {steps} steps, "
-        f"{simulation.duration * speed:.4g} m from x = {simulation.start_position:g} m (a sleeper is at 0)",
+        f"{simulation.duration * speed:.4g} m from x = {simulation.start_position:g} m"
+        + ("" if getattr(case.track, "sleeper_spacing", None) is None else " (a sleeper is at 0)"),
     ]
 
 
 def explain_cost(
-    case: Case, hertz: HertzContact, wheel: RigidWheel | None, track: DiscreteTrack | None, greens: MovingGreens | None
+    case: Case, hertz: HertzContact, wheel: WheelModel | None, track: TrackModel | None, greens: MovingGreens | None
 ) -> list[str]:
     """Return the lines on arithmetic and memory traffic per step."""
     simulation = case.simulation
     dt = simulation.dx / simulation.speed
     operations, moved = 0.0, 0.0
     estimated = ""
+    combined = case.contact.tangential != "none"
     if track is not None:
+        pairs = 9 if combined and not isinstance(track, DiscreteTrack) else 1
         if greens is not None:
-            samples = greens.values.shape[1]
+            samples = greens.values.shape[-1]
         else:
-            samples = max(int((memory_of(case) or horizon_of(track, simulation.speed)) / dt), 2)
+            longest = horizon_of(track, simulation.speed) if isinstance(track, DiscreteTrack) else HORIZON
+            samples = max(int((memory_of(case) or longest) / dt), 2)
             estimated = "" if memory_of(case) else "at most "
-        # One Green's function times the force, added to the future: reads both, writes a product and the sum.
-        operations += 2.0 * samples
-        moved += 8.0 * 5.0 * samples
-    if wheel is not None:
+        # Green's functions times the force, added to the future: reads both, writes a product and the sum.
+        operations += 2.0 * pairs * samples
+        moved += 8.0 * (pairs + 4.0 * pairs**0.5) * samples
+    if isinstance(wheel, RigidWheel):
         states = 2 * len(wheel.mass_matrix)
         operations += 2.0 * states * (states + 2)
+    elif wheel is not None:
+        directions = 3 if combined else 1
+        modes = len(wheel.rigid) if isinstance(wheel, MeasuredWheel) else len(wheel.all_modes)
+        memory = case.wheel.memory  # type: ignore[union-attr]
+        if memory is None and isinstance(wheel, MeasuredWheel):
+            memory, estimated = 0.5 / np.diff(wheel.measured.frequency).min(), "at most "
+        samples = int((memory or 0.0) / dt)
+        operations += 2.0 * modes * (4 + 4 * directions) + 2.0 * directions**2 * samples
+        moved += 8.0 * (2.0 * modes * (4 + 2 * directions) + directions**2 * samples)
     nodes = 1 if case.contact.length is None else round(case.contact.length / simulation.dx)
     if case.contact.normal == "half-space":
         # Two dense solves of k and two of up to 2 k unknowns, k the elements in contact.

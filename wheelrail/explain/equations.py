@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from wheelrail.case import Case
-from wheelrail.track.discrete import DiscreteTrack
-from wheelrail.wheel.rigid import RigidWheel
+from wheelrail.interaction.tracks import TrackModel
+from wheelrail.interaction.wheels import WheelModel
 
 __all__ = ["explain_equations", "explain_sources"]
 
 
-def explain_equations(case: Case, wheel: RigidWheel | None, track: DiscreteTrack | None) -> list[str]:
+def explain_equations(case: Case, wheel: WheelModel | None, track: TrackModel | None) -> list[str]:
     """Return the equations of a case and where they are printed."""
     coupled = case.load.coupling == "load"
     lines = [
@@ -48,6 +48,8 @@ def explain_equations(case: Case, wheel: RigidWheel | None, track: DiscreteTrack
             f"    with {filters[case.contact.prefilter]}",
         ]
     lines += _tangential_equations(case)
+    if case.contact.tangential != "none" and _moves_sideways(case):
+        lines += _structural_equations(case)
     if case.contact.normal == "half-space":
         return [*lines, "d(a) and p are solved together in Kalker's active set iteration."]
     return [*lines, "The equation for d(a) is solved by Newton's method with a safeguard."]
@@ -68,11 +70,38 @@ def _tangential_equations(case: Case) -> list[str]:
     ]
 
 
+def _moves_sideways(case: Case) -> bool:
+    return case.wheel.model == "flexible" or case.track.model == "waveguide"
+
+
+def _structural_equations(case: Case) -> list[str]:
+    lines = [
+        "xi_W, xi_R and F have three directions with all cross terms; a rigid wheel or a beam stands still sideways."
+    ]
+    if case.contact.tangential == "transient":
+        lines.append(
+            _equation("W += [xi_R - xi_W](a) - [xi_R - xi_W](a - 1)", "Pieringer 2011, eqs. 3.50 and 3.51; x, y")
+        )
+    else:
+        lines.append("    the creep-force law takes the vehicle's creepages alone: vibration does not act back on it")
+    if case.simulation.first_sample == "zero":
+        lines.append("First samples are 0: all displacements are known before the contact is solved (eqs. 3.8, 3.17).")
+    else:
+        lines.append("First samples that couple the vertical with x, y are 0; the others are solved with the contact.")
+    if case.load.coupling == "load":
+        lines.append(
+            "P in x, y: wheel_force_x, wheel_force_y; with balance what the contact's steady force at the start adds."
+        )
+    else:
+        lines.append("The rigid wheel's lateral motion is in the vehicle's creepage, not in xi_W.")
+    return lines
+
+
 def _equation(text: str, remark: str) -> str:
     return f"    {text:<56}  {remark}"
 
 
-def explain_sources(case: Case, track: DiscreteTrack | None) -> list[str]:
+def explain_sources(case: Case, track: TrackModel | None) -> list[str]:
     """Return the publications behind a case."""
     lines = [
         "Pieringer 2011, Time-domain modelling of high-frequency wheel/rail interaction, PhD thesis, Chalmers "

@@ -12,8 +12,8 @@ from wheelrail.explain.equations import explain_equations, explain_sources
 from wheelrail.explain.excitation import explain_excitation
 from wheelrail.explain.frequencies import explain_frequencies
 from wheelrail.explain.structures import explain_track, explain_wheel
-from wheelrail.greens.cache import find_cached
-from wheelrail.interaction.build import hertz_of, memory_of, track_of, wheel_of
+from wheelrail.interaction.build import hertz_of, track_of, wheel_of
+from wheelrail.interaction.tracks import find_greens_of
 
 __all__ = ["explain"]
 
@@ -25,7 +25,7 @@ def explain(case: Case) -> str:
     """Describe what a case computes.
 
     The moving Green's functions are not computed; what depends on them is taken from the cache, or estimated and then
-    said to be an estimate.
+    said to be an estimate. The modes of a flexible wheel and the waves of a rail are computed; that takes some seconds.
 
     Parameters
     ----------
@@ -44,15 +44,12 @@ def explain(case: Case) -> str:
     wheel, track, hertz = wheel_of(case), track_of(case), hertz_of(case)
     # What of the wheel is left here where the vehicle model moves it.
     moving = wheel.held() if wheel is not None and case.load.coupling == "displacement" else wheel
-    greens = None
-    if track is not None:
-        speed, dx = case.simulation.speed, case.simulation.dx
-        greens = find_cached(track, speed=speed, dx=dx, memory=memory_of(case))
+    greens = find_greens_of(case)
     warnings: list[str] = []
     sections = [
         ("Equations", explain_equations(case, moving, track)),
         ("Grid and time", explain_grid(case, hertz, warnings)),
-        ("Wheel", explain_wheel(case, wheel)),
+        ("Wheel", explain_wheel(case, wheel, warnings)),
         ("Track", explain_track(case, track, greens, warnings)),
         ("Contact", explain_contact(case, hertz, warnings)),
         ("Frequencies", explain_frequencies(case, moving, track, hertz)),

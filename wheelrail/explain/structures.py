@@ -1,12 +1,17 @@
-"""Wheel and track: their models, degrees of freedom, stiffness and Green's functions."""
+"""Rigid wheels and beam tracks: their models, degrees of freedom, stiffness and Green's functions."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from wheelrail.case import Case
+from wheelrail.explain.flexible import explain_flexible_wheel, explain_waveguide
 from wheelrail.greens.moving import ENERGY_TOLERANCE, MovingGreens, horizon_of
 from wheelrail.interaction.build import memory_of
+from wheelrail.interaction.tracks import TrackModel
+from wheelrail.interaction.wheels import WheelModel
 from wheelrail.track.discrete import DiscreteTrack
 from wheelrail.wheel.rigid import RigidWheel
 
@@ -15,9 +20,11 @@ __all__ = ["explain_track", "explain_wheel"]
 _DECAYED = 0.01  # of the peak; Green's functions that end above have been cut too early
 
 
-def explain_wheel(case: Case, wheel: RigidWheel | None) -> list[str]:
-    """Return the lines on the wheel."""
-    given = case.wheel
+def explain_wheel(case: Case, wheel: WheelModel | None, warnings: list[str]) -> list[str]:
+    """Return the lines on the wheel; add to ``warnings`` what doesn't suit it."""
+    if wheel is not None and not isinstance(wheel, RigidWheel):
+        return explain_flexible_wheel(case, wheel, warnings)
+    given: Any = case.wheel
     lines = [f"rolling radius            {given.radius:g} m"]
     if given.model == "rigid" or wheel is None:
         return ["rigid: no dynamics of its own (quasi-static)", *lines]
@@ -45,12 +52,12 @@ def explain_wheel(case: Case, wheel: RigidWheel | None) -> list[str]:
     return lines
 
 
-def explain_track(
-    case: Case, track: DiscreteTrack | None, greens: MovingGreens | None, warnings: list[str]
-) -> list[str]:
+def explain_track(case: Case, track: TrackModel | None, greens: MovingGreens | None, warnings: list[str]) -> list[str]:
     """Return the lines on the track; add to ``warnings`` if its Green's functions end too early."""
     if track is None:
         return ["rigid: no dynamics of its own (quasi-static)"]
+    if not isinstance(track, DiscreteTrack):
+        return explain_waveguide(case, track, greens)
     speed, dx = case.simulation.speed, case.simulation.dx
     dt, spacing = dx / speed, track.sleeper_spacing
     over, midspan = (1e-6 / track.static_compliance(x, [x])[0] for x in (0.0, 0.5 * spacing))

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .travelling_waves import hat_weights
+from .travelling_waves import moving_hat_weights
 
 __all__ = ["BlochModes", "bloch_greens"]
 
@@ -93,7 +93,7 @@ def bloch_greens(
     done = 0
     for begin in range(0, len(pole), _TERMS):
         part = slice(begin, begin + _TERMS)
-        present, later = hat_weights(pole[part, None] - 1j * wavenumber[part, ::-1] * speed, dt)
+        present, later = moving_hat_weights(pole[part, None] - 1j * wavenumber[part, ::-1] * speed, dt)
         alive = np.minimum(blocks, 1 + (_DECAYED / np.maximum(-np.real(pole[part]), 1e-9) / (_BLOCK * dt)).astype(int))
         for m in range(len(orders)):
             # [mode, force order, force direction, displacement direction]

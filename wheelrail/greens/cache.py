@@ -1,55 +1,29 @@
-"""Cache of moving Green's functions on disk, keyed by everything they depend on.
-
-Files are written atomically and carry a checksum: an interrupted or damaged one is never used, it is computed anew.
-The folder is the user's cache folder, or what the environment variable WHEELRAIL_CACHE names.
-"""
+"""Moving Green's functions from the cache on disk, keyed by everything they depend on."""
 
 from __future__ import annotations
 
-import hashlib
-import json
-import logging
-import os
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from typing import Any
 
-import platformdirs
+import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..numerics.array_file import ArrayFileError, read_arrays, write_arrays
+from ..numerics.disk_cache import CacheEntry, cache_folder, clear_cache, content_key, list_cache, recall, remember
 from .moving import ENERGY_TOLERANCE, LONGEST_HORIZON, MARGIN_BAYS, MovingGreens, PeriodicTrack, compute_moving_greens
 
-__all__ = ["CacheEntry", "cache_folder", "cached_moving_greens", "clear_cache", "find_cached", "list_cache"]
+__all__ = [
+    "CacheEntry",
+    "cache_folder",
+    "cached_greens",
+    "cached_moving_greens",
+    "clear_cache",
+    "find_cached",
+    "find_greens",
+    "list_cache",
+]
 
 ALGORITHM = 2  # raised whenever the same input gives other numbers
-_SUFFIX = ".greens"
-_log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class CacheEntry:
-    """One cached file.
-
-    Attributes
-    ----------
-    path : Path
-    size : int
-        Bytes.
-    description : str
-        What it holds, or what is wrong with it.
-    """
-
-    path: Path
-    size: int
-    description: str
-
-
-def cache_folder() -> Path:
-    """Folder of the cache; it need not exist."""
-    named = os.environ.get("WHEELRAIL_CACHE")
-    return Path(named) if named else Path(platformdirs.user_cache_dir("wheelrail", appauthor=False))
 
 
 def _key(track: PeriodicTrack, settings: dict[str, Any]) -> tuple[str, dict[str, Any]]:
@@ -62,9 +36,7 @@ def _key(track: PeriodicTrack, settings: dict[str, Any]) -> tuple[str, dict[str,
         "longest_horizon": LONGEST_HORIZON,
         "margin_bays": MARGIN_BAYS,
     }
-    # repr of a float is exact, so equal keys mean equal numbers.
-    text = json.dumps(content, sort_keys=True)
-    return hashlib.blake2b(text.encode(), digest_size=16).hexdigest(), content
+    return content_key(content), content
 
 
 def find_cached(track: PeriodicTrack, *, speed: float, dx: float, memory: float | None = None) -> MovingGreens | None:
@@ -80,15 +52,53 @@ def find_cached(track: PeriodicTrack, *, speed: float, dx: float, memory: float 
     MovingGreens or None
         None also for a damaged file, after a warning.
     """
-    key, _ = _key(track, {"speed": speed, "dx": dx, "memory": memory})
-    try:
-        header, arrays, _ = read_arrays(cache_folder() / f"{key}{_SUFFIX}")
-        return MovingGreens(**arrays, **header["scalars"])
-    except FileNotFoundError:
+    return find_greens(_key(track, {"speed": speed, "dx": dx, "memory": memory})[1])
+
+
+def find_greens(content: Mapping[str, Any]) -> MovingGreens | None:
+    """Look up moving Green's functions by all they depend on (JSON-able)."""
+    found = recall(content)
+    if found is None:
         return None
-    except (ArrayFileError, OSError, ValueError, KeyError, TypeError) as error:
-        _log.warning("cached Green's functions are not used and computed anew: %s", error)
-        return None
+    values, arrays = found
+    return MovingGreens(**arrays, **values)
+
+
+def cached_greens(content: Mapping[str, Any], compute: Callable[[], MovingGreens], *, description: str) -> MovingGreens:
+    """Get moving Green's functions from the cache, or compute and store them there.
+
+    Parameters
+    ----------
+    content : mapping
+        JSON-able: everything they depend on, with the version of their algorithm.
+    compute : callable
+        Computes them.
+    description : str
+        Of track, speed and grid, for people.
+
+    Returns
+    -------
+    MovingGreens
+    """
+    found = find_greens(content)
+    if found is not None:
+        return found
+    # One thread: the products are too small for more, and the numbers must not depend on the machine's cores.
+    with threadpool_limits(1):
+        greens = compute()
+    shape = greens.values.shape
+    remember(
+        content,
+        description=f"{description}: {int(np.prod(shape[:-1]))} functions of {shape[-1]} samples "
+        f"({shape[-1] * greens.dt:.3g} s)",
+        values={"dx": greens.dx, "dt": greens.dt, "horizon": greens.horizon},
+        arrays={
+            "values": greens.values,
+            "neglected_energy": greens.neglected_energy,
+            "neglected_compliance": greens.neglected_compliance,
+        },
+    )
+    return greens
 
 
 def cached_moving_greens(
@@ -112,51 +122,8 @@ def cached_moving_greens(
     -------
     MovingGreens
     """
-    found = find_cached(track, speed=speed, dx=dx, memory=memory)
-    if found is not None:
-        return found
-    key, content = _key(track, {"speed": speed, "dx": dx, "memory": memory})
-    path = cache_folder() / f"{key}{_SUFFIX}"
-    # One thread: its products are too small for more, and the numbers must not depend on the machine's cores.
-    with threadpool_limits(1):
-        greens = compute_moving_greens(track, speed=speed, dx=dx, memory=memory, progress=progress)
-    scalars = {"dx": greens.dx, "dt": greens.dt, "horizon": greens.horizon}
-    arrays = {
-        "values": greens.values,
-        "neglected_energy": greens.neglected_energy,
-        "neglected_compliance": greens.neglected_compliance,
-    }
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_arrays(path, {"key": content, "scalars": scalars}, arrays)
-    except OSError as error:
-        _log.warning("the Green's functions could not be cached: %s", error)
-    return greens
-
-
-def list_cache() -> list[CacheEntry]:
-    """List what the cache holds, sorted by name."""
-    entries = []
-    for path in sorted(cache_folder().glob(f"*{_SUFFIX}")):
-        try:
-            header, arrays, _ = read_arrays(path)
-            positions, samples = arrays["values"].shape
-            key, dt = header["key"], header["scalars"]["dt"]
-            text = (
-                f"{key['track']['kind']}, {key['speed'] * 3.6:.4g} km/h, dx {key['dx'] * 1e3:g} mm: "
-                f"{positions} functions of {samples} samples ({samples * dt:.3g} s)"
-            )
-        except (ArrayFileError, OSError, KeyError, ValueError) as error:
-            text = f"unusable: {error}"
-        entries.append(CacheEntry(path, path.stat().st_size, text))
-    return entries
-
-
-def clear_cache() -> int:
-    """Remove every cached file and what interrupted writes left behind; return the number of files."""
-    folder, count = cache_folder(), 0
-    for pattern in (f"*{_SUFFIX}", f".*{_SUFFIX}.*.part"):
-        for path in folder.glob(pattern):
-            path.unlink(missing_ok=True)
-            count += 1
-    return count
+    return cached_greens(
+        _key(track, {"speed": speed, "dx": dx, "memory": memory})[1],
+        lambda: compute_moving_greens(track, speed=speed, dx=dx, memory=memory, progress=progress),
+        description=f"{type(track).__name__}, {speed * 3.6:.4g} km/h, dx {dx * 1e3:g} mm",
+    )

@@ -19,9 +19,17 @@ from scipy.linalg import expm, matrix_balance
 
 from .recursion import Recursion
 
-__all__ = ["Discretisation", "OrdinaryGreens", "discretise", "sample"]
+__all__ = ["HIGHEST", "Discretisation", "OrdinaryGreens", "discretise", "sample"]
 
 Discretisation = Literal["linear", "sampled"]
+
+HIGHEST = 0.9
+"""Share of half the sampling frequency up to which single modes and waves vibrate; those above only yield.
+
+The grid shows a vibration above half the sampling frequency as one mirrored at that frequency, with the sign of its
+damping reversed: it feeds energy in, and lightly damped wheels run away. In contact a mode's frequency rises by some
+per cent, hence the margin.
+"""
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .protocol import FreeBodyError
+
 __all__ = ["Recursion"]
 
 
@@ -37,6 +39,38 @@ class Recursion:
     beta: NDArray
     c: NDArray
     first: float
+
+    @property
+    def directions(self) -> int:
+        """Number of directions: the vertical one."""
+        return 1
+
+    @property
+    def size(self) -> int:
+        """Numbers in its state."""
+        return len(self.beta)
+
+    def known(self, state: NDArray) -> tuple[float]:
+        """Return the displacement from all past forces, m."""
+        return (float(self.c @ state),)
+
+    def advance(self, state: NDArray, force: NDArray) -> None:
+        """Go on to the next step under a force (N), shape (1,)."""
+        state[:] = self.phi @ state + self.beta * force[0]
+
+    def steady(self, force: NDArray) -> NDArray:
+        """Return the state after a force (N), shape (1,), that has acted for ever.
+
+        Raises
+        ------
+        FreeBodyError
+            If it moves a body which nothing holds.
+        """
+        if not np.any(force):
+            return np.zeros(self.size)
+        if not np.isfinite(self.static_compliance()):
+            raise FreeBodyError("a constant force moves a body that nothing holds")
+        return np.linalg.solve(np.eye(self.size) - self.phi, self.beta) * force[0]
 
     def values(self, n: int) -> NDArray:
         """Discretised Green's function g(1) ... g(n) of Pieringer (2011), eq. 3.6, in m/N; shape (n,)."""

@@ -14,7 +14,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["hat_weights", "wave_greens"]
+from .ordinary import HIGHEST
+
+__all__ = ["hat_weights", "moving_hat_weights", "wave_greens"]
 
 _TERMS = 4096  # exponentials treated at a time
 _BLOCK = 64  # samples within which powers are tabulated
@@ -69,6 +71,16 @@ def hat_weights(rate: NDArray, dt: float) -> tuple[NDArray, NDArray]:
     return dt * np.where(small, series, present), dt * np.where(small, half**2, later)
 
 
+def moving_hat_weights(rate: NDArray, dt: float) -> tuple[NDArray, NDArray]:
+    """Weights as `hat_weights`, but exponentials above `HIGHEST` times half the sampling frequency only yield.
+
+    Their static response, -1 / rate, comes with the present force.
+    """
+    present, later = hat_weights(rate, dt)
+    fast = np.abs(np.imag(rate)) * dt > HIGHEST * np.pi
+    return np.where(fast, -1.0 / np.where(fast, rate, 1.0), present), np.where(fast, 0.0, later)
+
+
 def _factorial(n: int) -> float:
     return float(np.prod(np.arange(1.0, n + 1.0)))
 
@@ -114,7 +126,7 @@ def wave_greens(
     power = np.arange(_BLOCK)
     for begin in range(0, len(rates), _TERMS):
         rate = rates[begin : begin + _TERMS]
-        present, later = hat_weights(rate, dt)
+        present, later = moving_hat_weights(rate, dt)
         amplitude = amplitudes[begin : begin + _TERMS].T
         first += (amplitude @ present).real
         table = np.exp(np.multiply.outer(rate * dt, power)) * later[:, None]

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -20,49 +18,13 @@ from ..contact.spring import HertzSpring, averaging_weights
 from ..contact.tangential_models import TangentialModel
 from ..errors import CaseError
 from ..excitation.prepare import prepare_source
-from ..greens.cache import cached_moving_greens
-from ..greens.ordinary import discretise, sample
-from ..track.discrete import DiscreteTrack
-from ..wheel.rigid import RigidWheel
 from .inputs import Inputs
 from .model import Model
 from .parameters import OWN_SEEDS, Parameters
+from .tracks import memory_of, track_of, track_response
+from .wheels import wheel_of, wheel_responses
 
 __all__ = ["build_model", "curvatures_of", "hertz_of", "memory_of", "track_of", "wheel_of"]
-
-
-def wheel_of(case: Case) -> RigidWheel | None:
-    """Make the wheel model of a case; None for a wheel without dynamics."""
-    wheel = case.wheel
-    if wheel.model == "rigid":
-        return None
-    suspension = {
-        "mass": wheel.mass,
-        "suspension_stiffness": wheel.suspension_stiffness,
-        "suspension_damping": wheel.suspension_damping,
-    }
-    if wheel.model == "rigid-1dof":
-        return RigidWheel.one_dof(**suspension)
-    return RigidWheel.two_dof(
-        **suspension,
-        contact_mass=wheel.contact_mass,
-        contact_stiffness=wheel.contact_stiffness,
-        contact_damping=wheel.contact_damping,
-    )
-
-
-def track_of(case: Case) -> DiscreteTrack | None:
-    """Make the track model of a case; None for a rigid track."""
-    track = case.track
-    if track.model == "rigid":
-        return None
-    values = track.model_dump(exclude={"model", "preset", "memory"})
-    return DiscreteTrack(**values)
-
-
-def memory_of(case: Case) -> float | None:
-    """Length that a case sets for the moving Green's functions in s; None where it follows from their decay."""
-    return None if case.track.model == "rigid" else case.track.memory
 
 
 def curvatures_of(case: Case) -> tuple[float, float]:
@@ -110,40 +72,12 @@ def build_model(case: Case, progress: Callable[[float], None] | None = None) -> 
 def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
     simulation = case.simulation
     dt = simulation.dx / simulation.speed
-    report: dict[str, Any] = {}
-    wheel = wheel_of(case)
-    recursions = []
-    for part, name in ((wheel, "wheel"), (wheel.held() if wheel else None, "held_wheel")):
-        if part is None:
-            recursions.append(None)
-            continue
-        recursion = discretise(*part.state_space(), dt=dt)
-        recursions.append(recursion)
-        # As a recursion the function is never cut; this is when it has decayed, which a free wheel's never does.
-        decays = np.isfinite(recursion.static_compliance())
-        report[name] = {
-            "states": len(recursion.beta),
-            "first_sample": recursion.first,
-            "decay_time": len(sample(recursion, dt=dt).values) * dt if decays else None,
-        }
-    track, functions = track_of(case), None
+    # Tangential contact takes wheel and rail to three directions, as far as their models have them.
+    directions = 1 if case.contact.tangential == "none" else 3
+    wheel, held_wheel, report = wheel_responses(case, wheel_of(case), dt=dt, directions=directions)
+    track, facts = track_response(case, directions=directions, progress=progress)
     if track is not None:
-        try:
-            greens = cached_moving_greens(
-                track, speed=simulation.speed, dx=simulation.dx, memory=memory_of(case), progress=progress
-            )
-        except ValueError as error:
-            raise CaseError("track", [str(error)]) from error
-        functions = greens.values
-        report["track"] = {
-            "functions": functions.shape[0],
-            "samples": functions.shape[1],
-            "memory": functions.shape[1] * dt,
-            "horizon": greens.horizon,
-            "neglected_energy": float(greens.neglected_energy.max()),
-            "neglected_compliance": float(np.abs(greens.neglected_compliance).max()),
-            "degrees_of_freedom": track.degrees_of_freedom,
-        }
+        report["track"] = facts
     sources, notes = [], []
     for entry in case.excitation:
         keys = entry.model_dump(exclude_none=True)
@@ -165,10 +99,6 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
         random_seed=OWN_SEEDS,
         record=False,
     )
-    if simulation.first_sample == "zero":
-        recursions = [None if recursion is None else replace(recursion, first=0.0) for recursion in recursions]
-        if functions is not None:
-            functions = np.concatenate([np.zeros((len(functions), 1)), functions[:, 1:]], axis=1)
     contact = _contact_of(case)
     return Model(
         title=case.title or "",
@@ -176,9 +106,9 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
         dx=simulation.dx,
         parameters=parameters,
         start_inputs=_start_inputs(case),
-        wheel=recursions[0],
-        held_wheel=recursions[1],
-        track=functions,
+        wheel=wheel,
+        held_wheel=held_wheel,
+        track=track,
         contact=contact,
         tangential=_tangential_of(case, contact),
         sources=tuple(sources),

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from ..contact.solution import NormalContact
 from ..contact.tangential_models import TangentialModel
 from ..errors import ParameterError
-from ..greens.recursion import Recursion
+from ..greens.parts import response_to_parts
+from ..greens.protocol import WheelResponse, first_sample
+from ..greens.track_response import TrackResponse
 from .inputs import Inputs
 from .parameters import OWN_SEEDS, Parameters
 
@@ -52,15 +54,17 @@ class Model:
     parameters : Parameters
     start_inputs : Inputs
         What the case gives for the vehicle's inputs: the preload, creepages, lateral shift.
-    wheel : Recursion or None
-        Green's function of the wheel on its suspension; None for a wheel without dynamics.
-    held_wheel : Recursion or None
+    wheel : WheelResponse or None
+        Green's functions of the wheel on its suspension; None for a wheel without dynamics.
+    held_wheel : WheelResponse or None
         What remains of it in coupling by displacement.
-    track : ndarray, shape (positions, samples), or None
+    track : TrackResponse or None
         Moving Green's functions of one bay; None for a rigid track.
     contact : NormalContact
     tangential : TangentialModel or None
-        None for a run in vertical direction only.
+        None for a run in vertical direction only. With one, wheel and track may have three directions; their first
+        samples that couple the vertical with another direction are then zero. A body with one direction stands still
+        in the others.
     sources : tuple of Source
         Excitation as the case gives it.
     report : dict
@@ -72,9 +76,9 @@ class Model:
     dx: float
     parameters: Parameters
     start_inputs: Inputs
-    wheel: Recursion | None
-    held_wheel: Recursion | None
-    track: NDArray | None
+    wheel: WheelResponse | None
+    held_wheel: WheelResponse | None
+    track: TrackResponse | None
     contact: NormalContact
     tangential: TangentialModel | None
     sources: tuple[Source, ...]
@@ -91,9 +95,32 @@ class Model:
         return round(self.parameters.start_position / self.dx)
 
     @cached_property
-    def active_wheel(self) -> Recursion | None:
-        """The wheel's Green's function in the chosen coupling."""
+    def active_wheel(self) -> WheelResponse | None:
+        """The wheel's Green's functions in the chosen coupling."""
         return self.wheel if self.parameters.coupling == "load" else self.held_wheel
+
+    @cached_property
+    def wheel_first(self) -> float:
+        """First vertical sample of the active wheel, m/N."""
+        return 0.0 if self.active_wheel is None else float(first_sample(self.active_wheel)[-1, -1])
+
+    @cached_property
+    def wheel_first_tangential(self) -> NDArray | None:
+        """First samples of the active wheel along and across the rail, shape (2, 2), m/N; None if they are zero."""
+        if self.active_wheel is None or self.active_wheel.directions == 1:
+            return None
+        first = first_sample(self.active_wheel)[:2, :2]
+        return first if np.any(first) else None
+
+    @cached_property
+    def tangential_compliances(self) -> list[NDArray] | None:
+        """First samples of rail and wheel together for each position in a bay; None if they are zero."""
+        wheel = self.wheel_first_tangential
+        track = self.track
+        if track is None or track.directions == 1:
+            return None if wheel is None else [wheel]
+        both = [track.tangential_first(i) + (0.0 if wheel is None else wheel) for i in range(track.positions)]
+        return both if np.any(both) else None
 
     @cached_property
     def lines(self) -> tuple[Source, ...]:
@@ -103,33 +130,18 @@ class Model:
         return tuple(source.realise(dx=self.dx, seed_override=override) for source in self.sources)
 
     @cached_property
-    def unit_history(self) -> NDArray:
-        """Rail displacement at the start and after, per N of a force that rolled there for ever; shape (samples,).
-
-        Sample k belongs to step k; the force acts up to step -1.
-        """
-        if self.track is None:
-            return np.zeros(1)
-        positions, samples = self.track.shape
-        history = np.zeros(samples)
-        for age in range(1, samples):
-            history[: samples - age] += self.track[(self.start_index - age) % positions, age:]
-        return history
-
-    @cached_property
     def fingerprint(self) -> bytes:
         """Hash of all that shapes a run apart from the parameters; 16 bytes."""
         tangential = None if self.tangential is None else self.tangential.kind
         digest = hashlib.blake2b(repr((self.dx, self.start_inputs, tangential)).encode(), digest_size=16)
         meta, arrays = self.contact.to_parts()
         _update(digest, meta, arrays)
-        for recursion in (self.wheel, self.held_wheel):
-            if recursion is not None:
-                for part in (recursion.phi, recursion.beta, recursion.c, np.array(recursion.first)):
-                    digest.update(np.ascontiguousarray(part).data)
+        for wheel in (self.wheel, self.held_wheel):
+            if wheel is not None:
+                _update(digest, *response_to_parts(wheel))
         if self.track is not None:
-            digest.update(repr(self.track.shape).encode())
-            digest.update(np.ascontiguousarray(self.track).data)
+            digest.update(repr(self.track.values.shape).encode())
+            digest.update(self.track.values.data)
         for source in self.sources:
             _update(digest, *source.to_parts())
         return digest.digest()

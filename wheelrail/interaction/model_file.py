@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from ..contact.parts import contact_from_parts, tangential_model
 from ..errors import ModelFileError
 from ..excitation.sources import source_from_parts
-from ..greens.recursion import Recursion
+from ..greens.parts import response_from_parts, response_to_parts
+from ..greens.protocol import WheelResponse
+from ..greens.track_response import TrackResponse
 from ..numerics.array_file import ArrayFileError, read_arrays, write_arrays
 from .inputs import Inputs
 from .model import Model
@@ -19,7 +21,7 @@ from .parameters import Parameters
 
 __all__ = ["FORMAT", "load_model", "save_model"]
 
-FORMAT = 1
+FORMAT = 2
 
 
 def save_model(model: Model, path: str | os.PathLike[str]) -> None:
@@ -42,14 +44,14 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
         "report": model.report,
     }
     for name in ("wheel", "held_wheel"):
-        recursion: Recursion | None = getattr(model, name)
+        response: WheelResponse | None = getattr(model, name)
         header[name] = None
-        if recursion is not None:
-            header[name] = {"first": recursion.first}
-            arrays |= {f"{name}.{part}": getattr(recursion, part) for part in ("phi", "beta", "c")}
+        if response is not None:
+            header[name], parts = response_to_parts(response)
+            arrays |= {f"{name}.{part}": array for part, array in parts.items()}
     header["track"] = model.track is not None
     if model.track is not None:
-        arrays["track"] = model.track
+        arrays["track"] = model.track.values
     header["contact"], contact_arrays = model.contact.to_parts()
     arrays |= {f"contact.{name}": array for name, array in contact_arrays.items()}
     header["tangential"] = {"kind": "none"} if model.tangential is None else model.tangential.to_parts()
@@ -75,12 +77,11 @@ def load_model(path: str | os.PathLike[str]) -> Model:
         raise ModelFileError(f"the model file can't be read: {error}") from error
     if header.get("format") != FORMAT:
         raise ModelFileError(f"{path}: format {header.get('format')!r}, this version reads format {FORMAT}")
-    recursions = {}
+    wheels: dict[str, WheelResponse | None] = {}
     for name in ("wheel", "held_wheel"):
-        recursions[name] = None
-        if header[name] is not None:
-            parts = {part: arrays[f"{name}.{part}"] for part in ("phi", "beta", "c")}
-            recursions[name] = Recursion(**parts, first=header[name]["first"])
+        meta, prefix = header[name], f"{name}."
+        parts = {key.removeprefix(prefix): array for key, array in arrays.items() if key.startswith(prefix)}
+        wheels[name] = None if meta is None else response_from_parts(meta, parts)
     sources = []
     for number, entry in enumerate(header["sources"]):
         parts = {name: arrays[f"source{number}.{name}"] for name in entry["arrays"]}
@@ -93,9 +94,9 @@ def load_model(path: str | os.PathLike[str]) -> Model:
         dx=header["dx"],
         parameters=Parameters(**header["parameters"]),
         start_inputs=Inputs(**header["start_inputs"]),
-        wheel=recursions["wheel"],
-        held_wheel=recursions["held_wheel"],
-        track=arrays.get("track"),
+        wheel=wheels["wheel"],
+        held_wheel=wheels["held_wheel"],
+        track=TrackResponse(arrays["track"]) if header["track"] else None,
         contact=contact,
         tangential=tangential_model(header["tangential"], contact),
         sources=tuple(sources),

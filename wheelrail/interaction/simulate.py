@@ -15,7 +15,7 @@ from ..errors import ParameterError, WheelrailError
 from .cosimulation import OUTPUT_NAMES, REACHED, RESIDUAL_LIMIT
 from .inputs import Inputs
 from .model import Model
-from .start import start
+from .start import height_for_load, start
 from .state import FORCE, FORCE_X, FORCE_Y, ITERATIONS, RESIDUAL, RESULTS, SCALARS, State
 from .step import step
 
@@ -107,15 +107,7 @@ def stand_alone_inputs(model: Model) -> Inputs:
     inputs = model.start_inputs
     if model.parameters.coupling == "load":
         return inputs
-    smooth = model.contact.solve(
-        np.zeros(model.contact.nodes), weight=0.0, compliance=1.0, rhs=inputs.wheel_force_z, guess=1e-4
-    )
-    compliance = float(model.unit_history[0])
-    if model.track is not None:
-        compliance += float(model.track[model.start_index % len(model.track)][0])
-    if model.active_wheel is not None:
-        compliance += model.active_wheel.static_compliance()
-    return replace(inputs, wheel_z=smooth.approach + compliance * smooth.force)
+    return replace(inputs, wheel_z=height_for_load(model, inputs))
 
 
 class Simulation:
@@ -223,10 +215,8 @@ class Simulation:
                 block[name] = rows[:, FORCE] > 0.0
             elif name == "solver_iterations":
                 block[name] = rows[:, ITERATIONS].astype(np.int64)
-            elif name in _PER_STEP:
-                block[name] = rows[:, _PER_STEP[name]].copy()
             elif name != "distance":
-                block[name] = np.zeros(len(rows))  # ports whose physics this version does not have yet
+                block[name] = rows[:, _PER_STEP[name]].copy()
         return block
 
     def _judge(self, numbers: NDArray, force: NDArray, residual: NDArray) -> None:

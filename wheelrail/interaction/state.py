@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import StateError
+from ..greens.track_response import TrackResponse
 from .model import Model
 
 __all__ = ["RESULTS", "State"]
@@ -18,7 +19,10 @@ STEP, HEAD, OFFSET = 0, 1, 2
 # Results of the last step, which are the next step's warm start and the outputs.
 FORCE, APPROACH, STIFFNESS, LENGTH, WIDTH, AREA, PRESSURE, ITERATIONS, RESIDUAL, WHEEL, RAIL = range(3, 14)
 FORCE_X, FORCE_Y, MOMENT, SLIP, POWER = range(14, 19)
-SCALARS = 19
+WHEEL_X, WHEEL_Y, RAIL_X, RAIL_Y = range(19, 23)
+# What the vehicle's guiding forces are beyond the inputs: the balance of the tangential forces at the start.
+GUIDE_X, GUIDE_Y = 23, 24
+SCALARS = 25
 
 RESULTS = {
     "force_z": FORCE,
@@ -28,7 +32,11 @@ RESULTS = {
     "contact_width": WIDTH,
     "contact_area": AREA,
     "pressure_max": PRESSURE,
+    "wheel_disp_x": WHEEL_X,
+    "wheel_disp_y": WHEEL_Y,
     "wheel_disp_z": WHEEL,
+    "rail_disp_x": RAIL_X,
+    "rail_disp_y": RAIL_Y,
     "rail_disp_z": RAIL,
     "force_x": FORCE_X,
     "force_y": FORCE_Y,
@@ -44,35 +52,55 @@ class State:
     Attributes
     ----------
     block : ndarray, shape (size,)
-        All of it: scalars, the wheel's recursion, what the contact models keep, the rail's future displacements. The
+        All of it: scalars, the wheel's state, what the contact models keep, the rail's future displacements. The
         latter lie in a buffer of twice their length through which a window slides, so that a step adds to one
         contiguous stretch.
     wheel : ndarray
-        View of the recursion's state.
+        View of the wheel's state.
     normal, tangential : ndarray
         Views of what the contact models keep: pressures and tractions of the last step, if they have any.
-    future : ndarray
-        View of the buffer; the present step's entry is ``future[block[HEAD]]``.
+    future : ndarray, shape (d, 2 samples)
+        View of the buffer; the present step's entries are ``future[:, block[HEAD]]``.
+    force, drive : ndarray, shape (3,)
+        Work space: contact force F on the rail and what drives the wheel, P - F; N.
+    on_rail, on_wheel : ndarray, shape (d,)
+        Views of them in the directions that track and wheel have.
     """
 
-    __slots__ = ("_pushed", "block", "future", "normal", "samples", "tangential", "wheel", "window")
+    __slots__ = (
+        "_pushed",
+        "block",
+        "drive",
+        "force",
+        "future",
+        "normal",
+        "on_rail",
+        "on_wheel",
+        "tangential",
+        "wheel",
+        "window",
+    )
 
     def __init__(self, model: Model, block: NDArray | None = None) -> None:
-        wheel = 0 if model.active_wheel is None else len(model.active_wheel.beta)
-        self.samples = 1 if model.track is None else model.track.shape[1]
+        active, track = model.active_wheel, model.track
+        wheel, wheel_directions = (0, 0) if active is None else (active.size, active.directions)
+        samples, directions = (0, 0) if track is None else (track.samples, track.directions)
         normal = model.contact.memory
         tangential = 0 if model.tangential is None else model.tangential.memory
-        ends = np.cumsum([SCALARS, wheel, normal, tangential, 2 * self.samples])
+        ends = np.cumsum([SCALARS, wheel, normal, tangential, 2 * directions * samples])
         size = int(ends[-1])
         if block is None:
             block = np.zeros(size)
         elif block.shape != (size,):
             raise StateError(f"the state has {block.size} numbers, not the {size} of this model: it is another model's")
         self.block = block
-        self.wheel, self.normal, self.tangential, self.future = (block[first:last] for first, last in pairwise(ends))
+        self.wheel, self.normal, self.tangential, future = (block[first:last] for first, last in pairwise(ends))
+        self.future = future.reshape(directions, 2 * samples)
         # Work space, not part of the state: it is overwritten before it is read.
         self.window = np.zeros(model.contact.nodes)
-        self._pushed = np.empty(self.samples)
+        self.force, self.drive = np.zeros(3), np.zeros(3)
+        self.on_rail, self.on_wheel = self.force[3 - directions :], self.drive[3 - wheel_directions :]
+        self._pushed = np.empty(directions * samples)
 
     @property
     def step(self) -> int:
@@ -108,23 +136,14 @@ class State:
         """Return a hash of the block; equal states have equal digests."""
         return hashlib.blake2b(self.to_bytes(), digest_size=16).hexdigest()
 
-    def push(self, functions: NDArray, force: float) -> None:
-        """Let a force act on the rail's future displacements and go on to the next step.
+    def push(self, track: TrackResponse, index: int) -> None:
+        """Let the present force act on the rail's future displacements and go on to the next step.
 
         Parameters
         ----------
-        functions : ndarray, shape (samples,)
-            The moving Green's function of the force's position; its first sample belongs to the present step.
-        force : float
-            N.
+        track : TrackResponse
+        index : int
+            Grid index of the force's position.
         """
-        head, samples = int(self.block[HEAD]), self.samples
-        pushed = np.multiply(functions, force, out=self._pushed)
-        stretch = self.future[head : head + samples]
-        np.add(stretch, pushed, out=stretch)
-        head += 1
-        if head == samples:
-            self.future[:samples] = self.future[samples:]
-            self.future[samples:] = 0.0
-            head = 0
-        self.block[HEAD] = head
+        block = self.block
+        block[HEAD] = track.push(self.future, int(block[HEAD]), index, self.on_rail, self._pushed)

@@ -33,8 +33,10 @@ def read_text(path: Path) -> str:
         If there is no such file or it isn't text.
     """
     try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise DataFileError(f"{path}: larger than {_MOST_BYTES / 1e9:.0f} GB; cut the file")
+        size = path.stat().st_size
+        if size > _MOST_BYTES:
+            shown = f"{size / 1e9:.1f} GB; at most {_MOST_BYTES / 1e9:.0f} GB are read"
+            raise DataFileError(f"{path}: {shown}; cut the file")
         raw = path.read_bytes()
     except FileNotFoundError:
         raise DataFileError(f"{path}: there is no such file") from None
@@ -49,7 +51,7 @@ def read_text(path: Path) -> str:
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return raw.decode("latin-1")
+        return raw.decode("latin-1")  # instruments write the micro sign as one byte
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,24 +65,32 @@ def is_interrupted(path: str | os.PathLike[str]) -> bool:
         return not dataset.attrs.get("complete")
 
 
-def case_of_result(dataset: xr.Dataset, *, source: str) -> Case:
+def case_of_result(dataset: xr.Dataset, *, source: str, structures: bool = True) -> Case:
     """Return the case of a result without its excitation, whose data files may be elsewhere by now.
+
+    Data files of wheel and track are looked for where they lay beside the result when it was written.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         From `open_result`.
     source : str
-        Name of the file for messages.
+        Name of the file, for messages and for the data files.
+    structures : bool
+        False: wheel and track are rigid instead, and need no data files.
 
     Raises
     ------
     ResultFileError
-        If the case in the file is not one that this version reads.
+        If the case in the file is not one that this version reads, or data files of wheel and track are missing.
     """
     try:
         data = tomllib.loads(dataset.attrs["case"])
         data.pop("excitation", None)
-        return case_from_dict(data, source=source)
+        if not structures:
+            data["wheel"] = {"model": "rigid", "radius": data["wheel"]["radius"]}
+            data["track"] = {"model": "rigid"}
+        folder = os.path.normpath(Path(source).parent / dataset.attrs.get("data_folder", ""))
+        return case_from_dict(data, source=source, folder=folder)
     except (KeyError, tomllib.TOMLDecodeError, CaseError) as error:
         raise ResultFileError(f"{source}: the case in the file can't be read: {error}") from error

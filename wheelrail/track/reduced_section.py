@@ -16,10 +16,10 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import eigsh
 
+from .waveguide_settings import MARGIN, SPACING
+
 __all__ = ["ReducedSection", "SectionWaves", "reduce_section"]
 
-SPACING = 5.0  # rad/m between the wavenumbers of the basis
-MARGIN = 2.0  # the basis holds shapes up to this multiple of the highest frequency
 LARGEST_WAVENUMBER = 500.0  # rad/m; a sound section has no waves of interest that short
 _DEPENDENT = 1e-10  # shapes whose share is below this, relative to the largest, are taken as dependent
 _SHIFT = -((2.0 * np.pi * 200.0) ** 2)  # below all frequencies, also those of a free rail at k = 0

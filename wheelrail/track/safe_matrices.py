@@ -16,10 +16,10 @@ from skfem import Basis, BilinearForm, ElementQuad2, MeshQuad2
 
 from .safe_mesh import add_pad, foot_weights, head_weights, pad_ends
 from .section import RailSection
+from .waveguide_settings import ELEMENT_SIZE
 
 __all__ = ["Material", "Pad", "SectionMatrices", "section_matrices"]
 
-SIZE = 6e-3  # m, side of the quadrilaterals
 _QUADRATURE = 6
 
 
@@ -148,7 +148,7 @@ class SectionMatrices:
 
 
 def section_matrices(
-    section: RailSection, *, material: Material, pad: Pad | None, contact_position: float, size: float = SIZE
+    section: RailSection, *, material: Material, pad: Pad | None, contact_position: float, size: float = ELEMENT_SIZE
 ) -> SectionMatrices:
     """Assemble the matrices of a rail's section, free or on a pad.
 

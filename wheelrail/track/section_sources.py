@@ -21,12 +21,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import DataFileError
+from ..numerics.outline_file import OUTLINE_SUFFIXES, read_outline
 from ..numerics.section_mesh import read_mesh
 from .section import RailSection, section_from_mesh
 
 __all__ = ["PRESETS", "load_section", "preset_section"]
 
 PRESETS = {"60e1": "rail_60e1.csv", "bv50-like": "rail_bv50_like.csv"}
+_COLUMNS = "lateral, vertical in m"
 _SAGITTA = 1e-3  # mm; distance of the outline's sides from the arcs they stand for
 _STEP = np.radians(4.0)  # largest turn of an arc between two points of the outline
 _LARGEST = 1.0  # m; no rail is that high, so its coordinates must be millimetres
@@ -38,8 +40,8 @@ def load_section(source: str, folder: Path | None = None) -> RailSection:
     Parameters
     ----------
     source : str
-        A name of `PRESETS`; or a file of points (``.csv`` or ``.txt``: lateral, vertical in m, in turn, after an
-        optional line of headings; ``#`` starts a comment); or any mesh file that meshio reads, in m.
+        A name of `PRESETS`; or a file of points in turn, lateral and vertical in m (``.csv``, ``.txt`` or ``.json``,
+        see `wheelrail.numerics.outline_file.read_outline`); or any mesh file that meshio reads, in m.
     folder : Path, optional
         What a file's name is relative to.
 
@@ -58,11 +60,11 @@ def load_section(source: str, folder: Path | None = None) -> RailSection:
     if not path.is_file():
         raise DataFileError(f"{source}: neither a preset section ({', '.join(PRESETS)}) nor a file")
     try:
-        if path.suffix.lower() in (".csv", ".txt"):
-            section = RailSection(_read_points(path), path.stem)
+        if path.suffix.lower() in OUTLINE_SUFFIXES:
+            section = RailSection(read_outline(path, columns=_COLUMNS), path.stem)
         else:
             section = section_from_mesh(read_mesh(path), path.stem)
-    except (ValueError, UnicodeDecodeError) as error:
+    except ValueError as error:
         message = str(error)
         raise DataFileError(message if message.startswith(str(path)) else f"{path}: {message}") from error
     if section.height > _LARGEST:
@@ -82,28 +84,6 @@ def preset_section(name: str) -> RailSection:
 def _rows(text: str) -> list[list[str]]:
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     return [[entry.strip() for entry in row] for row in csv.reader(lines)]
-
-
-def _read_points(path: Path) -> NDArray:
-    rows = _rows(path.read_text(encoding="utf-8-sig"))
-    if rows and not _is_number(rows[0][0]):
-        rows = rows[1:]
-    points = []
-    for number, row in enumerate(rows, start=1):
-        if len(row) != 2 or not all(_is_number(entry) for entry in row):
-            raise ValueError(f"point {number} is {','.join(row)!r}; each needs two numbers, lateral and vertical in m")
-        points.append([float(entry) for entry in row])
-    if len(points) < 3:
-        raise ValueError(f"holds {len(points)} points; an outline needs at least three")
-    return np.array(points)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _segments(rows: list[list[str]]) -> NDArray:

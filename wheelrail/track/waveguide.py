@@ -18,10 +18,9 @@ from .ring import Ring, close_ring
 from .safe_matrices import Material, Pad, SectionMatrices, section_matrices
 from .section import RailSection
 from .supported_ring import SupportedRing, Supports, close_supported_ring
+from .waveguide_settings import RING_LENGTH
 
 __all__ = ["WaveguideTrack"]
-
-RING_LENGTH = 400.0  # m; waves die out before they come round
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-from .modes import FlexibleWheel, Mode
+from .modes import RESIDUAL, FlexibleWheel, Mode
 from .receptance_file import PointReceptance
 
 __all__ = ["ModalFit", "fit_modes"]
@@ -100,9 +100,10 @@ def fit_modes(
     poles = _first_poles(frequency, values) * 2.0 * np.pi / scale
     for _ in range(rounds):
         moved = _moved_poles(s[kept], data[:, kept], weight[:, kept], poles, free)
-        change = np.max(np.abs(moved - poles) / np.abs(np.real(poles))) if len(moved) == len(poles) else np.inf
+        same = len(moved) == len(poles)
+        change = np.max(np.abs(moved - poles) / np.abs(np.real(poles)), initial=0.0) if same else np.inf
         poles = moved
-        if change < _CONVERGED:
+        if change < _CONVERGED or not len(poles):
             break
     poles = poles[(np.abs(poles) <= _HIGHEST) & (-np.real(poles) <= _LARGEST_RATIO * np.abs(poles))]
     while True:
@@ -259,7 +260,7 @@ def _above(compliance: NDArray, highest: float) -> list[Mode]:
             x, y, z = (omega * np.sqrt(value) * shape).tolist()
             modes.append(
                 Mode.with_frequency(
-                    name=f"above-{len(modes) + 1}",
+                    name=f"{RESIDUAL}{len(modes) + 1}",
                     mass=1.0,
                     frequency=_RESIDUAL_FREQUENCY * highest,
                     damping_ratio=_RESIDUAL_RATIO,

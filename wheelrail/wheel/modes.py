@@ -9,12 +9,15 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FlexibleWheel", "Mode", "rigid_modes"]
+__all__ = ["RESIDUAL", "FlexibleWheel", "Mode", "rigid_modes"]
+
+RESIDUAL = "above-"
+"""Beginning of the names of modes that stand for the compliance of all modes above a band."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +28,8 @@ class Mode:
     ----------
     name : str
         (n,m,a), (n,r) or (n,c) without the brackets, "7,0,a" for instance. An asterisk marks the partner turned by a
-        quarter of a wave around the wheel; "vertical", "lateral" and "roll" are the rigid-body modes.
+        quarter of a wave around the wheel; "vertical", "lateral" and "roll" are the rigid-body modes. "fit-1" and
+        "above-1" for instance were fitted to receptances.
     mass : float
         Modal mass in kg.
     stiffness : float
@@ -67,6 +71,11 @@ class Mode:
             return math.inf if self.damping else 0.0
         return self.damping / (2.0 * math.sqrt(self.stiffness * self.mass))
 
+    @property
+    def residual(self) -> bool:
+        """Whether it is no mode of its own, but stands for the compliance of all above a band."""
+        return self.name.startswith(RESIDUAL)
+
 
 @dataclass(frozen=True)
 class FlexibleWheel:
@@ -78,10 +87,13 @@ class FlexibleWheel:
         Flexible modes.
     rigid : tuple of Mode
         Rigid-body modes.
+    notes : tuple of str
+        What a user should know of where the modes come from.
     """
 
     modes: tuple[Mode, ...]
     rigid: tuple[Mode, ...] = ()
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def all_modes(self) -> tuple[Mode, ...]:

@@ -6,6 +6,9 @@ import tomllib
 import pytest
 
 from wheelrail.case import case_from_dict, default_case_text, load_case, parse_case
+from wheelrail.case.presets import presets_of
+from wheelrail.case.track_sections import RAIL_SECTIONS
+from wheelrail.case.wheel_sections import WHEEL_SECTIONS
 from wheelrail.errors import CaseError
 
 VERSION_WORDS = "not available in this version (0.1.0)"
@@ -37,6 +40,19 @@ def changed(changes):
 
 
 HERTZ = {"normal": "hertz", "rail_radius": 0.3, "youngs_modulus": 207e9, "poisson_ratio": 0.3}
+
+WHEEL = {"preset": None, **presets_of("wheel")["synthetic-c20"].values}
+for _key in ("lateral_mass", "lateral_stiffness", "lateral_damping"):
+    del WHEEL[_key]
+MEASURED = {
+    "preset": None,
+    **dict.fromkeys(WHEEL),
+    "model": "flexible",
+    "radius": 0.46,
+    "receptances": __file__,
+    "low_frequency": "static",
+}
+RAIL = {"preset": None, **presets_of("track")["thesis-waveguide-60e1"].values}
 
 SINGLE = [
     # out of range
@@ -101,7 +117,9 @@ SINGLE = [
     ),
     (
         {"track": {}},
-        'track.model: missing; give one of: rigid, discrete; or name a preset (preset = "thesis-discrete")',
+        'track.model: missing; give one of: rigid, discrete, waveguide; or name a preset (preset = "thesis-discrete" '
+        'or preset = "thesis-waveguide-bv50" or preset = "thesis-waveguide-60e1" '
+        'or preset = "waveguide-60e1-sleepers")',
     ),
     # not one of the names
     ({"load.coupling": "lod"}, "load.coupling = \"lod\": did you mean 'load'? must be one of: load, displacement"),
@@ -127,14 +145,6 @@ SINGLE = [
         "an FMU starts with these values",
     ),
     (
-        {"wheel": {"model": "flexible", "section": "c20", "modes": "m.csv"}},
-        f'wheel.model = "flexible": {VERSION_WORDS}; available: rigid, rigid-1dof, rigid-2dof',
-    ),
-    (
-        {"track": {"model": "waveguide", "loss_factor": 0.01}},
-        f'track.model = "waveguide": {VERSION_WORDS}; available: rigid, discrete',
-    ),
-    (
         {"friction": {"law": "kraft", "coefficient": 0.3, "normalise": True}},
         f'friction.law = "kraft": {VERSION_WORDS}; available: constant',
     ),
@@ -147,12 +157,88 @@ SINGLE = [
     # presets
     (
         {"wheel.preset": "thesis-3dof"},
-        'wheel.preset = "thesis-3dof": no such preset; known for [wheel]: thesis-1dof, thesis-2dof',
+        'wheel.preset = "thesis-3dof": no such preset; known for [wheel]: thesis-1dof, thesis-2dof, synthetic-c20',
     ),
-    ({"track.preset": 3}, "track.preset = 3: no such preset; known for [track]: thesis-discrete"),
+    (
+        {"track.preset": 3},
+        "track.preset = 3: no such preset; known for [track]: thesis-discrete, thesis-waveguide-bv50, "
+        "thesis-waveguide-60e1, waveguide-60e1-sleepers",
+    ),
     (
         {"wheel.model": "rigid-1dof"},
         'wheel.preset = "thesis-2dof": is for model = "rigid-2dof", but wheel.model = "rigid-1dof"',
+    ),
+    # flexible wheel
+    (
+        {"wheel": {**WHEEL, "section": None}},
+        "wheel.section: missing; give section (a preset or file), modes (a file) or receptances (a file), or name a "
+        'preset (preset = "synthetic-c20")',
+    ),
+    ({"wheel": {**WHEEL, "modes": __file__}}, "wheel: section and modes given together; give one of them"),
+    ({"wheel": {**WHEEL, "density": None}}, "wheel.density: missing; a wheel from section needs it (kg/m3)"),
+    ({"wheel": {**WHEEL, "mass": None}}, "wheel.mass: missing; a wheel from section needs it (kg)"),
+    ({"wheel": {**WHEEL, "node": 3}}, "wheel.node: not used with section; leave it out"),
+    (
+        {"wheel": {**WHEEL, "receptances_as": "modes"}},
+        "wheel.receptances_as: not used with section; leave it out",
+    ),
+    (
+        {"wheel": {**MEASURED, "receptances_as": "modess"}},
+        "wheel.receptances_as = \"modess\": did you mean 'modes'? must be one of: modes, functions",
+    ),
+    (
+        {"wheel": {**MEASURED, "receptances_as": "functions", "remove_modes": ["fit-1"]}},
+        'wheel.remove_modes: not used with receptances_as = "functions"; leave it out',
+    ),
+    ({"wheel": {**MEASURED, "low_frequency": None}}, "wheel.low_frequency: missing; a wheel from receptances needs it"),
+    (
+        {"wheel": {**WHEEL, "lateral_mass": 300.0, "lateral_damping": 1e3}},
+        "wheel.lateral_stiffness: missing; this motion (lateral_mass, lateral_stiffness, lateral_damping) needs it "
+        "(N/m)",
+    ),
+    (
+        {"wheel": {**WHEEL, "damping": "thesiss"}},
+        'wheel.damping = "thesiss": did you mean \'thesis\'? must be a finite number >= 0, "thesis", or a table of '
+        "these by name of the mode",
+    ),
+    (
+        {"wheel": {**WHEEL, "damping": {"2,0,a": -1.0}}},
+        'wheel.damping = {"2,0,a": -1.0}: must be a finite number >= 0, "thesis", or a table of these by name of the '
+        "mode",
+    ),
+    (
+        {"wheel": {**WHEEL, "remove_modes": "7,0,a"}},
+        'wheel.remove_modes = "7,0,a": must be a list of names of modes, such as ["7,0,a"]',
+    ),
+    ({"wheel": {**WHEEL, "max_frequency": 3e4}}, "wheel.max_frequency = 30000.0: must be > 0 and <= 20000.0 (Hz)"),
+    ({"wheel": {**WHEEL, "suspension": 3}}, None),
+    (
+        {"wheel": {"preset": "synthetic-c20", "modes": "m.csv"}},
+        'wheel.preset = "synthetic-c20": is for section, but modes is given; give the keys themselves',
+    ),
+    # waveguide track
+    ({"track": {**RAIL, "density": None}}, None),
+    (
+        {"track": {**RAIL, "pad_thickness": None}},
+        'track.pad_thickness: missing; support = "continuous" needs it (m)',
+    ),
+    (
+        {"track": {**RAIL, "sleeper_mass": 100.0}},
+        'track.sleeper_mass: not used with support = "continuous"; leave it out',
+    ),
+    (
+        {"track": {"preset": "waveguide-60e1-sleepers", "sleeper_spacing": 0.6005}},
+        "track.sleeper_spacing = 0.6005: must be a multiple of simulation.dx = 0.001 (m); "
+        "the nearest dx that fits is 0.00100083333333",
+    ),
+    (
+        {"track": {"preset": "thesis-waveguide-60e1", "support": "discrete"}},
+        'track.preset = "thesis-waveguide-60e1": is for support = "continuous", but track.support = "discrete"; give '
+        "the keys themselves",
+    ),
+    (
+        {"track": {**RAIL, "support": "ballast"}},
+        'track.support = "ballast": must be one of: continuous, discrete',
     ),
     # several keys together
     (
@@ -212,6 +298,29 @@ SINGLE = [
 @pytest.mark.parametrize(("changes", "line"), [pair for pair in SINGLE if pair[1]], ids=lambda value: str(value)[:60])
 def test_one_fault_gives_exactly_its_line(changes, line):
     assert faults_of(changed(changes)) == [line]
+
+
+def test_sections_and_files_of_flexible_bodies_must_exist(tmp_path):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "mine.csv").write_text("r,z\n")
+    data = changed({"wheel": {**WHEEL, "section": "synthetic-c2"}, "track": {**RAIL, "section": "folder"}})
+    assert faults_of(data, folder=tmp_path) == [
+        "wheel.section = \"synthetic-c2\": did you mean 'synthetic-c20'? it comes with the program (synthetic-c20) or "
+        f"is a file; looked for {tmp_path / 'synthetic-c2'}",
+        'track.section = "folder": is a folder; give a data file',
+    ]
+    modes = {"model": "flexible", "radius": 0.4, "modes": "m.csv", "mass": 300.0, "suspension_stiffness": 0.0}
+    faults = faults_of(changed({"wheel": {**modes, "suspension_damping": 0.0}}), folder=tmp_path)
+    assert faults == [f'wheel.modes = "m.csv": no such file; looked for {tmp_path / "m.csv"}']
+    case_from_dict(changed({"wheel": {**WHEEL, "section": "mine.csv"}, "track": RAIL}), folder=tmp_path)
+
+
+def test_the_sections_that_come_with_the_program_are_those_that_the_case_knows():
+    from wheelrail.track.section_sources import PRESETS as RAILS
+    from wheelrail.wheel.section import PRESETS as WHEELS
+
+    assert tuple(WHEELS) == WHEEL_SECTIONS
+    assert tuple(RAILS) == RAIL_SECTIONS
 
 
 def test_missing_quantity_names_the_preset_of_its_model():

@@ -11,6 +11,7 @@ from wheelrail.case import default_case_text, json_schema, load_case
 
 jsonschema = pytest.importorskip("jsonschema")
 
+MEASURED = {"model": "flexible", "radius": 0.46, "receptances": "r.csv", "low_frequency": "static"}
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "cases").glob("*.toml"))
 
 
@@ -48,6 +49,12 @@ def test_accepts_examples_with_and_without_presets(validator, path):
         ("wheel", {"preset": "thesis-3dof"}),
         ("wheel", {"model": "rigid-1dof", "radius": 0.46}),
         ("wheel", {"model": "flexible", "radius": 0.46}),
+        ("wheel", {"model": "flexible", "radius": 0.46, "section": "a.csv", "modes": "b.csv"}),
+        ("wheel", {"preset": "synthetic-c20", "damping": -1.0}),
+        ("wheel", {"preset": "synthetic-c20", "axes": ["x", "y"]}),
+        ("wheel", {**MEASURED, "receptances_as": "impulses"}),
+        ("track", {"model": "waveguide"}),
+        ("track", {"preset": "thesis-waveguide-60e1", "support": "ballast"}),
         ("track", {"preset": "thesis-discrete", "pad_stiffness": -1.0}),
         ("track", {"preset": "thesis-discrete", "bays": 71}),
         ("load", {"coupling": "load"}),
@@ -69,6 +76,12 @@ def test_refuses(validator, section, table):
     [
         ("wheel", {"preset": "thesis-1dof", "mass": 400}),
         ("wheel", {"model": "rigid-2dof", "preset": "thesis-2dof"}),
+        ("wheel", {"preset": "synthetic-c20", "contact_position": 10e-3, "remove_modes": ["7,0,a"]}),
+        ("wheel", {"preset": "synthetic-c20", "damping": {"others": "thesis", "7,0,a": 1e-3}}),
+        ("wheel", {"model": "flexible", "radius": 0.46, "modes": "m.unv", "axes": ["x", "-z", "y"], "damping": 1e-3}),
+        ("wheel", MEASURED),
+        ("wheel", {**MEASURED, "receptances_as": "modes", "remove_modes": ["fit-2"]}),
+        ("track", {"preset": "waveguide-60e1-sleepers", "contact_position": -5e-3}),
         ("load", {"preset": "thesis-65kN", "coupling": "displacement"}),
         ("excitation", [{"type": "measured", "on": "rail", "file": "x.csv", "column": "left"}]),
         ("excitation", []),
@@ -93,7 +106,7 @@ def test_prefilter_rules(validator):
 def test_every_key_is_described_and_every_number_has_a_unit():
     schema = json_schema()
     tables = [definition for definition in schema["$defs"].values() if "properties" in definition]
-    assert len(tables) == 16
+    assert len(tables) == 18
     for table in tables:
         for key, part in copy.deepcopy(table["properties"]).items():
             assert part.get("description"), (table["title"], key)

@@ -65,7 +65,7 @@ def test_views_are_parts_of_the_block(model, state):
     assert np.shares_memory(state.wheel, state.block)
     assert np.shares_memory(state.future, state.block)
     assert len(state.wheel) == 4
-    assert len(state.future) == 2 * model.track.shape[1]
+    assert state.future.shape == (1, 2 * model.track.samples)
 
 
 def test_foreign_bytes_are_refused(model, state, small_model):

@@ -65,13 +65,13 @@ class BruteForce:
 
     def rail(self) -> float:
         """Displacement now, at the last force's position."""
-        model, samples = self.model, self.model.track.shape[1]
+        model, samples = self.model, self.model.track.samples
         now = len(self.forces) - 1
         total = 0.0
         for age in range(samples):
             at = now - age
             force = self.forces[at] if at >= 0 else self.before
-            total += model.track[(model.start_index + at) % len(model.track), age] * force
+            total += model.track.values[(model.start_index + at) % model.track.positions, 0, 0, age] * force
         return total
 
     def wheel_part(self, load: list[float]) -> float:
@@ -87,7 +87,7 @@ def test_long_run_against_brute_force(small_model, wheel, contact):
     model = with_line(small_model(wheel=wheel, contact=contact), rough, periodic=True)
     model = model.configured(start_position=0.235, roughness_scale=8.0)
     state = start(model, LOAD)
-    samples = model.track.shape[1]
+    samples = model.track.samples
     brute = BruteForce(model, state.block[FORCE], "load")
     offset = state.block[OFFSET]
     loads, lost = [65e3], 0
@@ -132,7 +132,7 @@ def test_displacement_coupling_against_brute_force(small_model):
     first = float(state.block[FORCE])
     brute = BruteForce(model, first, "displacement")
     held = model.active_wheel.static_compliance()
-    samples = model.track.shape[1]
+    samples = model.track.samples
     # In the steady start the held wheel gives way by F / k_W.
     assert held == pytest.approx(1 / 6e9, abs=0, rel=1e-9)
     assert state.block[WHEEL] == pytest.approx(-first / 6e9, abs=0, rel=1e-12)

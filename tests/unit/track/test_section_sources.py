@@ -43,8 +43,12 @@ def test_names_of_presets_take_either_case():
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
-        ("a.csv", "-0.015,0\n0.015,zero\n0,1\n", r"a.csv: point 2 is '0.015,zero'; each needs two numbers"),
-        ("a.csv", "-0.015,0\n0.015\n", r"a.csv: point 2 is '0.015'; each needs two numbers"),
+        (
+            "a.csv",
+            "-0.015,0\n0.015,zero\n0,1\n",
+            r"a.csv: point 2 is \[0.015, 'zero'\]; each needs two numbers, lateral",
+        ),
+        ("a.csv", "-0.015,0\n0.015\n", r"a.csv: point 2 is \[0.015\]; each needs two numbers"),
         ("a.csv", "lateral,vertical\n0,0\n1,1\n", r"a.csv: holds 2 points"),
         ("a.csv", "0,0\n0.1,0.1\n0.1,0\n0,0.1\n", r"a.csv: the outline crosses or touches itself"),
         (
