@@ -104,6 +104,12 @@ def _parser() -> argparse.ArgumentParser:
     explain.add_argument("case", nargs="?", metavar="CASE", help=case_help)
     explain.set_defaults(command=_explain)
 
+    stability = commands.add_parser(
+        "stability", help="say which wheel modes grow in steady sliding at constant friction: what can squeal"
+    )
+    stability.add_argument("case", metavar="CASE", help="case file with a flexible wheel, friction and creepage")
+    stability.set_defaults(command=_stability)
+
     schema = commands.add_parser("schema", help="print the JSON schema of case files")
     schema.set_defaults(command=_schema)
 
@@ -257,6 +263,26 @@ def _explain(options: argparse.Namespace) -> int:
     from wheelrail.explain import explain
 
     print(explain(_case_of(options)))
+    return 0
+
+
+def _stability(options: argparse.Namespace) -> int:
+    from wheelrail.analysis.sliding_case import case_stability
+
+    result = case_stability(load_case(options.case))
+    print("wheel mode    alone        damping    in sliding contact   damping     growth")
+    for mode in result.modes:
+        print(
+            f"({mode.name})".ljust(10)
+            + f"{mode.frequency:9.1f} Hz {mode.damping_ratio:12.3e} {mode.coupled_frequency:15.1f} Hz "
+            f"{mode.coupled_damping_ratio:13.3e} {mode.growth_rate:9.2f} 1/s{'  grows' if mode.unstable else ''}"
+        )
+    count = len(result.unstable)
+    names = ", ".join(f"({mode.name})" for mode in result.unstable) or "-"
+    print(f"\nwheel modes that can squeal at constant friction: {count}: {names}")
+    others = result.growing - count
+    if others:
+        print(f"more growing oscillations, of wheel mass and rail (Nyquist's criterion): {others}")
     return 0
 
 

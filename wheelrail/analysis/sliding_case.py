@@ -1,0 +1,110 @@
+"""The stability of steady sliding for a case file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..case import Case
+from ..errors import CaseError
+from ..interaction.build import hertz_of
+from ..interaction.tracks import track_of
+from ..interaction.wheels import wheel_of
+from ..wheel.modes import FlexibleWheel
+from .stability import SlidingLoop, WheelModeStability, mode_stability, unstable_count
+
+__all__ = ["CaseStability", "case_stability", "sliding_loop"]
+
+HIGHEST = 3.0  # of the Nyquist curve, as a multiple of the wheel's highest modal frequency
+
+
+@dataclass(frozen=True)
+class CaseStability:
+    """Stability of steady sliding of one case.
+
+    Attributes
+    ----------
+    modes : tuple of WheelModeStability
+        The wheel's modes in contact.
+    growing : int
+        Growing oscillations of the whole system by Nyquist's criterion; more than the growing modes of the wheel if
+        wheel mass and rail, or the rail alone, have one of their own.
+    """
+
+    modes: tuple[WheelModeStability, ...]
+    growing: int
+
+    @property
+    def unstable(self) -> tuple[WheelModeStability, ...]:
+        """Growing modes of the wheel, the fastest first."""
+        return tuple(sorted((m for m in self.modes if m.unstable), key=lambda m: -m.growth_rate))
+
+
+def sliding_loop(case: Case, *, x: float | None = None) -> SlidingLoop:
+    """Linearise a case about steady sliding.
+
+    Parameters
+    ----------
+    case : Case
+        With a flexible wheel given by modes, a waveguide or rigid track, friction and a creepage.
+    x : float, optional
+        Place of the contact on a rail with discrete supports, m from a sleeper; left out: the case's start.
+
+    Returns
+    -------
+    SlidingLoop
+
+    Raises
+    ------
+    CaseError
+        If the case has no sliding in three directions to be judged.
+    """
+    wheel, friction, creepage = wheel_of(case), case.friction, case.creepage
+    if not isinstance(wheel, FlexibleWheel):
+        raise CaseError(
+            "wheel.model",
+            [
+                'the stability of sliding needs a wheel with modes: "flexible" from section, modes or receptances as '
+                "modes"
+            ],
+        )
+    if case.track.model == "discrete":
+        raise CaseError(
+            "track.model",
+            ['the beam track has no lateral motion; the stability of sliding needs "waveguide" or "rigid"'],
+        )
+    if friction is None or creepage is None:
+        raise CaseError("friction", ["the stability of sliding needs [friction] and [creepage]"])
+    if creepage.x == 0.0 and creepage.y == 0.0:
+        raise CaseError("creepage", ["x and y are both 0, so there is no direction of sliding"])
+    track: Any = track_of(case)
+    place = case.simulation.start_position if x is None else x
+
+    def rail(frequency: NDArray) -> NDArray:
+        if track is None:
+            return np.zeros((len(frequency), 3, 3))
+        return track.receptance(frequency, place)
+
+    hertz = hertz_of(case)
+    # F = C d^1.5 about the preload.
+    return SlidingLoop(wheel, rail, 1.5 * hertz.load / hertz.approach, friction.coefficient, (creepage.x, creepage.y))
+
+
+def case_stability(case: Case, *, x: float | None = None) -> CaseStability:
+    """Find the wheel modes of a case that grow in steady sliding.
+
+    Parameters
+    ----------
+    case, x
+        As `sliding_loop` takes them.
+
+    Returns
+    -------
+    CaseStability
+    """
+    loop = sliding_loop(case, x=x)
+    highest = HIGHEST * max(mode.frequency for mode in loop.wheel.modes)
+    return CaseStability(mode_stability(loop), unstable_count(loop, highest_frequency=highest))
