@@ -146,6 +146,7 @@ def run_case(
         "case": model.case,
         "model_report": json.dumps(model.report),
         "model_fingerprint": fingerprint,
+        "data_folder": _from_there(path.parent, case.folder),
     }
     begun = simulation.state.step
     with (
@@ -194,6 +195,14 @@ def run_case(
         wall_time=wall_time,
         statistics=simulation.statistics,
     )
+
+
+def _from_there(start: Path, folder: Path) -> str:
+    """Write a folder as seen from another one, so that both can be moved together."""
+    try:
+        return Path(os.path.relpath(folder.absolute(), start.absolute())).as_posix()
+    except ValueError:  # on another drive
+        return folder.absolute().as_posix()
 
 
 def _check_same_case(checkpoint: Checkpoint, case: Case) -> None:
