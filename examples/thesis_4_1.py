@@ -27,6 +27,8 @@ from wheelrail.interaction.build import build_model, track_of, wheel_of
 from wheelrail.interaction.cosimulation import CoSimulation
 from wheelrail.interaction.model import Model
 from wheelrail.reference.direct_integration import integrate_interaction
+from wheelrail.track.discrete import DiscreteTrack
+from wheelrail.wheel.rigid import RigidWheel
 
 LOAD, SPEED, DX, SPACING = 65e3, 106 / 3.6, 1e-3, 0.6
 CASE = """
@@ -98,8 +100,8 @@ def compare(excitation: str, *, bays: int = 240, sleeper_bays: int = 16, refinem
     case = parse_case(CASE.format(duration=steps * DX / SPEED, bays=bays, excitation=EXCITATIONS[excitation]))
     model, track, wheel = build_model(case), track_of(case), wheel_of(case)
     assert isinstance(model.contact, HertzSpring)
-    assert track is not None
-    assert wheel is not None
+    assert isinstance(track, DiscreteTrack)
+    assert isinstance(wheel, RigidWheel)
     forces: list[float] = []
     run = CoSimulation(model)
     run.recorder = lambda _time, _x, _y, force: forces.append(force)
