@@ -272,17 +272,26 @@ def _stability(options: argparse.Namespace) -> int:
     result = case_stability(load_case(options.case))
     print("wheel mode    alone        damping    in sliding contact   damping     growth")
     for mode in result.modes:
-        print(
-            f"({mode.name})".ljust(10)
-            + f"{mode.frequency:9.1f} Hz {mode.damping_ratio:12.3e} {mode.coupled_frequency:15.1f} Hz "
-            f"{mode.coupled_damping_ratio:13.3e} {mode.growth_rate:9.2f} 1/s{'  grows' if mode.unstable else ''}"
-        )
+        line = f"({mode.name})".ljust(10) + f"{mode.frequency:9.1f} Hz {mode.damping_ratio:12.3e} "
+        if mode.converged:
+            line += f"{mode.coupled_frequency:15.1f} Hz {mode.coupled_damping_ratio:13.3e} {mode.growth_rate:9.2f} 1/s"
+            line += "  grows" if mode.unstable else ""
+        else:
+            line += "          could not be followed into contact"
+        print(line)
     count = len(result.unstable)
     names = ", ".join(f"({mode.name})" for mode in result.unstable) or "-"
     print(f"\nwheel modes that can squeal at constant friction: {count}: {names}")
     others = result.growing - count
-    if others:
+    if others > 0:
         print(f"more growing oscillations, of wheel mass and rail (Nyquist's criterion): {others}")
+    elif others < 0:
+        print(f"warning: Nyquist's criterion counts {result.growing} only; the list above can't be trusted")
+    if result.saturation < 0.99:
+        print(
+            f"warning: in steady rolling the tangential force is {result.saturation:.3f} of the friction limit; this "
+            "check takes the contact as sliding fully, so it does not hold here"
+        )
     return 0
 
 

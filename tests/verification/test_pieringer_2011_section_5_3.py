@@ -1,7 +1,8 @@
 """Squeal at constant friction (Pieringer 2011, section 5.3.1): runs in time against the stability of sliding.
 
-The case is examples/cases/squeal.toml. What the thesis found in 108 runs: stick/slip only for negative lateral creepage
-and contact towards the field side, at axial modes without nodal circles. The stability check uses neither the contact
+The case is examples/cases/squeal.toml. What the thesis found in 108 runs with its wheel: stick/slip only for negative
+lateral creepage and contact towards the field side, at axial modes without nodal circles. The synthetic wheel's web is not
+symmetric: what is the centre for one of its modes is not the tread's centre, and not that of another mode. The stability check uses neither the contact
 algorithm nor the Green's functions of the runs.
 """
 
@@ -58,7 +59,7 @@ def run(case: Case, duration: float) -> dict[str, np.ndarray]:
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
 
-def test_towards_the_field_side_axial_modes_grow_at_negative_creepage_only(rail) -> None:
+def test_20_mm_towards_the_field_side_axial_modes_grow_at_negative_creepage_only(rail) -> None:
     found = growing(squeal_case(), rail)
     assert set(found) == {"2,0,a", "3,0,a", "5,0,a"}
     assert max(found, key=lambda name: found[name]) == "5,0,a"
@@ -80,6 +81,32 @@ def test_at_the_tread_centre_growth_is_a_tenth(rail) -> None:
     assert max(centre.values()) < 0.1 * max(growing(squeal_case(), rail).values())
 
 
+def test_positive_creepage_makes_modes_grow_where_their_coupling_has_the_other_sign(rail) -> None:
+    # Found: (5,0,a) 22.9 and (3,0,a) 2.1 1/s at the centre; (3,0,a) 16.6 and (2,0,a) 14.8 1/s towards the flange.
+    centre = growing(squeal_case(contact_position=0.0, creepage=1e-2), rail)
+    assert set(centre) == {"5,0,a", "3,0,a"}
+    assert centre["5,0,a"] > 10.0 * centre["3,0,a"]
+    flange = growing(squeal_case(contact_position=-20e-3, creepage=1e-2), rail)
+    assert set(flange) == {"3,0,a", "2,0,a"}
+    assert growing(squeal_case(contact_position=-20e-3), rail) == {}
+
+
+@pytest.mark.parametrize(
+    ("position", "creepage", "friction"), [(20e-3, -1e-2, 0.3), (10e-3, -1e-2, 0.3), (0.0, 1e-2, 0.6)]
+)
+def test_modes_in_contact_are_zeros_of_the_return_difference(rail, position, creepage, friction) -> None:
+    """Also (1,c) and (4,r), whose zeros lie close to each other."""
+    loop = loop_of(squeal_case(contact_position=position, creepage=creepage, friction=friction), rail)
+    modes = mode_stability(loop)
+    found = [mode for mode in modes if mode.converged]
+    assert len(found) >= len(modes) - 1
+    for mode in found:
+        omega, zeta = 2.0 * np.pi * mode.coupled_frequency, mode.coupled_damping_ratio
+        s = omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2))
+        nearby = loop.return_difference(np.array([s, s * (1.0 + 1e-5)]))
+        assert abs(nearby[0]) < 1e-3 * abs(nearby[1])  # achieved: 1e-4
+
+
 def test_little_friction_and_much_damping_keep_it_stable(rail) -> None:
     assert growing(squeal_case(damping=1e-2), rail) == {}
     assert growing(squeal_case(friction=0.05), rail) == {}
@@ -98,8 +125,8 @@ def test_stick_slip_develops_at_an_axial_mode() -> None:
     dt = result["time"][1]
     late = result["time"] > 0.7
     measures = squeal_measures(force_y=result["force_y"][late], slip_fraction=result["slip_fraction"][late], dt=dt)
-    # Found: a part sticks in 40 % of the steps, at 3138 Hz.
-    assert measures.stick_share > 0.2
+    # Found: a part sticks in 42 % of the steps, at 3137 Hz. At dx 0.5 mm it is 48 %: 4.4 steps make one cycle here.
+    assert measures.stick_share == pytest.approx(0.42, abs=0.05)
     modes = [mode for mode in sliding_loop(case).wheel.modes if mode.shape[1]]
     mode = nearest_mode(modes, measures.main_frequency)
     assert mode.name == "5,0,a"
@@ -129,11 +156,21 @@ def test_nothing_develops_where_sliding_is_stable(changes, rail) -> None:
 
 
 @pytest.mark.slow
-def test_nothing_develops_at_the_tread_centre_in_the_time_of_the_thesis() -> None:
-    result = run(squeal_case(contact_position=0.0), 3.5)
-    late = result["time"] > 3.0
+def test_stick_slip_is_not_reached_at_the_tread_centre_in_the_time_of_the_thesis(rail) -> None:
+    """What grows there, with 1.5 1/s by the check, does so slowly: from 0.1 um it takes more than the thesis' 3.5 s."""
+    case = squeal_case(contact_position=0.0)
+    result = run(case, 3.5)
+    time, force = result["time"], result["force_z"] - PRELOAD
+    late = time > 3.0
     assert np.all(result["slip_fraction"][late] == 1.0)
-    assert np.abs(result["force_z"][late] - PRELOAD).max() < 200.0
+    assert np.abs(force[late]).max() < 200.0
+    (mode,) = (mode for mode in mode_stability(loop_of(case, rail)) if mode.unstable)
+    band = mode.coupled_frequency + np.array([-30.0, 30.0])
+    filtered = sosfiltfilt(butter(4, band, btype="band", fs=1.0 / time[1], output="sos"), force)
+    steady = (time > 1.5) & (time < 3.0)
+    growth = np.polyfit(time[steady], np.log(np.abs(hilbert(filtered))[steady]), 1)[0]
+    # Achieved: 1.1 and 1.5 1/s; the unsaturated contact takes 0.44 1/s, see below.
+    assert growth == pytest.approx(mode.growth_rate - 0.44, abs=0.1)
 
 
 @pytest.mark.slow

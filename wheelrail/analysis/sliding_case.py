@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case import Case
+from ..contact.creep.linear import linear_creep_force
+from ..contact.creep.vermeulen_johnson import saturated_fraction
 from ..errors import CaseError
 from ..interaction.build import hertz_of
 from ..interaction.tracks import track_of
@@ -29,12 +31,16 @@ class CaseStability:
     ----------
     modes : tuple of WheelModeStability
         The wheel's modes in contact.
+    saturation : float
+        Tangential force in steady rolling over the friction limit, by Vermeulen and Johnson (1964). The check takes the
+        contact as sliding fully; below about 0.99 it does not hold.
     growing : int
         Growing oscillations of the whole system by Nyquist's criterion; more than the growing modes of the wheel if
         wheel mass and rail, or the rail alone, have one of their own.
     """
 
     modes: tuple[WheelModeStability, ...]
+    saturation: float
     growing: int
 
     @property
@@ -80,6 +86,8 @@ def sliding_loop(case: Case, *, x: float | None = None) -> SlidingLoop:
         raise CaseError("friction", ["the stability of sliding needs [friction] and [creepage]"])
     if creepage.x == 0.0 and creepage.y == 0.0:
         raise CaseError("creepage", ["x and y are both 0, so there is no direction of sliding"])
+    if not wheel.modes:
+        raise CaseError("wheel.max_frequency", ["the wheel has no mode up to this frequency; raise it"])
     track: Any = track_of(case)
     place = case.simulation.start_position if x is None else x
 
@@ -107,4 +115,24 @@ def case_stability(case: Case, *, x: float | None = None) -> CaseStability:
     """
     loop = sliding_loop(case, x=x)
     highest = HIGHEST * max(mode.frequency for mode in loop.wheel.modes)
-    return CaseStability(mode_stability(loop), unstable_count(loop, highest_frequency=highest))
+    return CaseStability(mode_stability(loop), _saturation(case), unstable_count(loop, highest_frequency=highest))
+
+
+def _saturation(case: Case) -> float:
+    """Tangential force of steady rolling over the friction limit."""
+    hertz, contact, friction, creepage = hertz_of(case), case.contact, case.friction, case.creepage
+    assert friction is not None
+    assert creepage is not None
+    linear = linear_creep_force(
+        creepage_x=creepage.x,
+        creepage_y=creepage.y,
+        spin=creepage.spin,
+        semi_axis_x=hertz.semi_axis_x,
+        semi_axis_y=hertz.semi_axis_y,
+        shear_modulus=contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio)),
+        poisson_ratio=contact.poisson_ratio,
+    )
+    limit = friction.coefficient * hertz.load
+    if limit == 0.0:
+        return 1.0
+    return float(saturated_fraction(float(np.hypot(linear.force_x, linear.force_y)) / limit))

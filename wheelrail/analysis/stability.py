@@ -28,6 +28,8 @@ __all__ = ["SlidingLoop", "WheelModeStability", "mode_stability", "unstable_coun
 _STEP = 0.3  # largest change of phase between two points of a Nyquist curve, rad
 _ROUNDS = 40
 _CONVERGED = 1e-9
+_SHARES = (10, 40, 160)  # steps in which the contact stiffness is raised
+_SAME = 1e-7  # relative distance below which two zeros are one
 
 
 @dataclass(frozen=True)
@@ -84,6 +86,8 @@ class WheelModeStability:
         Of the wheel alone, Hz and 1.
     coupled_frequency, coupled_damping_ratio : float
         In sliding contact; a negative damping ratio means that the mode grows.
+    converged : bool
+        Whether the mode could be followed into contact; if not, the coupled values are not to be used.
     """
 
     name: str
@@ -91,11 +95,12 @@ class WheelModeStability:
     damping_ratio: float
     coupled_frequency: float
     coupled_damping_ratio: float
+    converged: bool
 
     @property
     def unstable(self) -> bool:
-        """Whether the mode grows."""
-        return self.coupled_damping_ratio < 0.0
+        """Whether the mode is known to grow."""
+        return self.converged and self.coupled_damping_ratio < 0.0
 
     @property
     def growth_rate(self) -> float:
@@ -120,15 +125,22 @@ def mode_stability(loop: SlidingLoop, *, lowest_frequency: float = 100.0) -> tup
     Notes
     -----
     The contact stiffness is raised from 0 in steps, and the zero that starts at the mode's pole is followed by the
-    secant method.
+    secant method; in finer steps if it does not converge or meets another mode's zero.
     """
     force = loop.force_direction()
-    result = []
+    result: list[WheelModeStability] = []
+    taken: list[complex] = []
     for mode in loop.wheel.modes:
         residue = mode.shape[2] * float(np.dot(mode.shape, force))
         if mode.frequency < lowest_frequency or residue == 0.0 or mode.damping_ratio >= 1.0 or mode.residual:
             continue
-        s = _follow(loop, mode.mass, mode.damping, mode.stiffness)
+        s, converged = 0j, False
+        for steps in _SHARES:
+            s, converged = _follow(loop, mode.mass, mode.damping, mode.stiffness, steps)
+            converged = converged and all(abs(s - other) > _SAME * abs(s) for other in taken)
+            if converged:
+                taken.append(s)
+                break
         size = abs(s)
         result.append(
             WheelModeStability(
@@ -137,13 +149,14 @@ def mode_stability(loop: SlidingLoop, *, lowest_frequency: float = 100.0) -> tup
                 mode.damping_ratio,
                 size / (2.0 * np.pi),
                 -s.real / size,
+                converged,
             )
         )
     return tuple(sorted(result, key=lambda entry: entry.frequency))
 
 
-def _follow(loop: SlidingLoop, mass: float, damping: float, stiffness: float) -> complex:
-    """Zero that grows out of a mode's pole as the contact stiffness rises from 0."""
+def _follow(loop: SlidingLoop, mass: float, damping: float, stiffness: float, steps: int) -> tuple[complex, bool]:
+    """Zero that grows out of a mode's pole as the contact stiffness rises from 0, and whether it was found."""
     omega = np.sqrt(stiffness / mass)
     zeta = damping / (2.0 * mass * omega)
     s = omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2))
@@ -153,18 +166,24 @@ def _follow(loop: SlidingLoop, mass: float, damping: float, stiffness: float) ->
         # 1 + share * gain, freed of the mode's own pole.
         return (1.0 + share * (difference - 1.0)) * (mass * point**2 + damping * point + stiffness) / stiffness
 
-    for share in np.linspace(0.1, 1.0, 10) ** 2:
+    converged = False
+    for share in (np.arange(1, steps + 1) / steps) ** 2:
+        converged = False
         before, now = s * (1.0 - 1e-6), s * (1.0 + 1e-7j)
         f_before, f_now = value(before, share), value(now, share)
         for _ in range(_ROUNDS):
             if f_now == f_before:
+                converged = f_now == 0.0
                 break
             before, now, f_before = now, now - f_now * (now - before) / (f_now - f_before), f_now
+            if not np.isfinite(now):
+                return s, False
             if abs(now - before) < _CONVERGED * abs(now):
+                converged = True
                 break
             f_now = value(now, share)
         s = now
-    return s
+    return s, converged
 
 
 def unstable_count(loop: SlidingLoop, *, highest_frequency: float, lowest_frequency: float = 1.0) -> int:

@@ -69,13 +69,15 @@ def _waveguide(case: Case) -> WaveguideTrack:
                 sleeper_mass=given.sleeper_mass,
                 **{name: _triple(given, name) for name in _TRIPLES},
             )
-        return WaveguideTrack(
+        track = WaveguideTrack(
             section=load_section(given.section, case.folder),
             material=Material(**{key: getattr(given, key) for key in material}),
             support=support,
             contact_position=given.contact_position,
             max_frequency=given.max_frequency,
         )
+        _ = track.matrices  # a contact beside the head or a pad too wide shows here
+        return track
     except ValueError as error:
         raise CaseError("track", [str(error)]) from error
 
