@@ -1,9 +1,9 @@
 """Squeal at constant friction (Pieringer 2011, section 5.3.1): runs in time against the stability of sliding.
 
 The case is examples/cases/squeal.toml. What the thesis found in 108 runs with its wheel: stick/slip only for negative
-lateral creepage and contact towards the field side, at axial modes without nodal circles. The synthetic wheel's web is not
-symmetric: what is the centre for one of its modes is not the tread's centre, and not that of another mode. The stability check uses neither the contact
-algorithm nor the Green's functions of the runs.
+lateral creepage and contact towards the field side, at axial modes without nodal circles. The synthetic wheel's web is
+not symmetric: what is the centre for one of its modes is not the tread's centre, and not that of another mode. The
+stability check uses neither the contact algorithm nor the Green's functions of the runs.
 """
 
 import copy
