@@ -249,7 +249,7 @@ def steady_rolling(
             state = roll(half_space, normal, friction=friction, shift=shift, previous=tractions)
             tractions = state.tractions
             iterations += state.iterations
-        solution = solve_tangential(problem, tractions[:, contact], matrix)
+        solution = solve_tangential(problem, tractions[:, contact], matrix, symmetric=False)
         iterations += solution.iterations
         if best is None or solution.residual < best.residual:
             best = solution

@@ -20,7 +20,14 @@ from numpy.typing import NDArray
 
 from .half_space import HalfSpace
 
-__all__ = ["TangentialProblem", "TangentialState", "influence_matrix", "residual_of", "solve_tangential"]
+__all__ = [
+    "TangentialProblem",
+    "TangentialState",
+    "accelerated_gradient",
+    "influence_matrix",
+    "residual_of",
+    "solve_tangential",
+]
 
 TOLERANCE = 1e-10  # of the residual
 ROUNDING = 1e-9  # a residual below which a step that brings nothing more is taken for rounding
@@ -119,7 +126,12 @@ def residual_of(problem: TangentialProblem, tractions: NDArray, slip: NDArray, m
 
 
 def solve_tangential(
-    problem: TangentialProblem, guess: NDArray | None = None, matrix: NDArray | None = None
+    problem: TangentialProblem,
+    guess: NDArray | None = None,
+    matrix: NDArray | None = None,
+    *,
+    symmetric: bool = True,
+    gradient_steps: int = GRADIENT_STEPS,
 ) -> TangentialState:
     """Find tractions, slip and the slipping elements.
 
@@ -129,7 +141,11 @@ def solve_tangential(
     guess : ndarray, shape (2, k), optional
         Tractions nearby, such as those of the step before.
     matrix : ndarray, shape (2 k, 2 k), optional
-        Another matrix than `influence_matrix`; positive definite, not necessarily symmetric (steady rolling).
+        `influence_matrix` if it is at hand, or another one, positive definite.
+    symmetric : bool
+        Whether the matrix is symmetric; that of steady rolling is not.
+    gradient_steps : int
+        Descent steps before Newton's method, which find the slipping elements from a distant guess.
 
     Returns
     -------
@@ -139,7 +155,6 @@ def solve_tangential(
     k, g = len(problem.contact), problem.bound
     if k == 0 or not np.any(g > 0.0):  # nothing to hold: everything slides freely
         return TangentialState(np.zeros((2, k)), problem.shift.copy(), np.ones(k, dtype=bool), 0, 0.0)
-    symmetric = matrix is None
     A = influence_matrix(problem) if matrix is None else matrix
     h = problem.shift
     rho = 1.0 / A[0, 0]  # makes tractions of slip; any positive number gives the same solution
@@ -152,7 +167,7 @@ def solve_tangential(
     p = np.zeros((2, k)) if guess is None else _projected(guess, g)
     lipschitz = float(np.abs(A).sum(axis=1).max())
     if symmetric:
-        p = _accelerated_gradient(A, p, h, g, lipschitz, GRADIENT_STEPS)
+        p = accelerated_gradient(A, p, h, g, lipschitz=lipschitz, steps=gradient_steps)
     S, trial, residual = evaluate(p)
     iterations = 0
     while residual > TOLERANCE and iterations < MAXIMUM_ITERATIONS:
@@ -169,15 +184,34 @@ def solve_tangential(
         else:
             if not symmetric or (residual < ROUNDING and new_residual >= residual):
                 break
-            new = _accelerated_gradient(A, p, h, g, lipschitz, GRADIENT_STEPS * (1 + iterations))
+            steps = GRADIENT_STEPS * (1 + iterations)
+            new = accelerated_gradient(A, p, h, g, lipschitz=lipschitz, steps=steps)
             new_S, new_trial, new_residual = evaluate(new)
         p, S, trial, residual = new, new_S, new_trial, new_residual
     slipping = np.hypot(trial[0], trial[1]) > g
     return TangentialState(p, np.where(slipping, S, 0.0), slipping, iterations, residual)
 
 
-def _accelerated_gradient(A: NDArray, p: NDArray, h: NDArray, g: NDArray, lipschitz: float, steps: int) -> NDArray:
-    """Projected gradient steps with momentum (Nesterov 1983): they find the slipping elements cheaply."""
+def accelerated_gradient(A: NDArray, p: NDArray, h: NDArray, g: NDArray, *, lipschitz: float, steps: int) -> NDArray:
+    """Descend by projected gradient steps with momentum (Nesterov 1983): they find the slipping elements cheaply.
+
+    Parameters
+    ----------
+    A : ndarray, shape (2 k, 2 k)
+        Symmetric.
+    p : ndarray, shape (2, k)
+        Tractions to start from, Pa.
+    h, g : ndarray, shapes (2, k) and (k,)
+        Shift in m and traction bounds in Pa.
+    lipschitz : float
+        Bound of the largest eigenvalue of A, m/Pa.
+    steps : int
+
+    Returns
+    -------
+    ndarray, shape (2, k)
+        Within the bounds after one step or more.
+    """
     ahead, momentum = p, 1.0
     for _ in range(steps):
         S = (A @ ahead.reshape(-1)).reshape(p.shape) + h

@@ -65,6 +65,13 @@ class TangentialSolution(NamedTuple):
     residual : float
     memory : ndarray or None
         What the next step needs; None if nothing.
+    friction_method : int
+        What found the friction coefficients: place in `wheelrail.contact.friction.problem.METHODS`; 0 if they are
+        given.
+    friction_solutions : int
+        Number of solutions that were found, if they were looked for, else 0.
+    friction_force_spread : float
+        Largest difference between their tangential forces, N.
     """
 
     force_x: float
@@ -75,6 +82,9 @@ class TangentialSolution(NamedTuple):
     iterations: int
     residual: float
     memory: NDArray | None
+    friction_method: int = 0
+    friction_solutions: int = 0
+    friction_force_spread: float = 0.0
 
 
 NOTHING = TangentialSolution(0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, None)
@@ -97,7 +107,9 @@ class TangentialModel(Protocol):
         """Return a JSON-able description with its ``kind``, for a file."""
         ...
 
-    def begin(self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float) -> TangentialSolution:
+    def begin(
+        self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float, dt: float
+    ) -> TangentialSolution:
         """Solve steady rolling."""
         ...
 
@@ -108,10 +120,11 @@ class TangentialModel(Protocol):
         *,
         friction: float,
         dx: float,
+        dt: float,
         memory: NDArray,
         motion: Motion = STANDSTILL,
     ) -> TangentialSolution:
-        """Solve one step; ``memory`` is that of the step before, shape (memory,)."""
+        """Solve one step of dx (m) in dt (s); ``memory`` is that of the step before, shape (memory,)."""
         ...
 
 
@@ -149,9 +162,11 @@ class TransientRolling:
     def _free(self) -> TangentialSolution:
         return NOTHING._replace(memory=np.zeros(self.memory))
 
-    def begin(self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float) -> TangentialSolution:
+    def begin(
+        self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float, dt: float
+    ) -> TangentialSolution:
         """Solve steady rolling; without creepage there are no tractions."""
-        del dx
+        del dx, dt
         field = normal.field
         if field is None or len(field.contact) == 0 or friction == 0.0 or not any(creepages):
             return self._free()
@@ -167,11 +182,12 @@ class TransientRolling:
         *,
         friction: float,
         dx: float,
+        dt: float,
         memory: NDArray,
         motion: Motion = STANDSTILL,
     ) -> TangentialSolution:
         """Solve one transient step."""
-        del dx
+        del dx, dt
         grid, field = self.half_space, normal.field
         if field is None or len(field.contact) == 0 or friction == 0.0:
             return self._free()
@@ -207,9 +223,11 @@ class CreepForceLaw:
         """Return a JSON-able description."""
         return {"kind": self.kind, "shear_modulus": self.shear_modulus, "poisson_ratio": self.poisson_ratio}
 
-    def begin(self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float) -> TangentialSolution:
+    def begin(
+        self, normal: NormalSolution, creepages: Creepages, *, friction: float, dx: float, dt: float
+    ) -> TangentialSolution:
         """Evaluate the law."""
-        return self.step(normal, creepages, friction=friction, dx=dx, memory=np.zeros(0))
+        return self.step(normal, creepages, friction=friction, dx=dx, dt=dt, memory=np.zeros(0))
 
     def step(
         self,
@@ -218,11 +236,12 @@ class CreepForceLaw:
         *,
         friction: float,
         dx: float,
+        dt: float,
         memory: NDArray,
         motion: Motion = STANDSTILL,
     ) -> TangentialSolution:
         """Evaluate the law."""
-        del memory, motion
+        del dt, memory, motion
         if normal.force <= 0.0 or not any(creepages) or (self.kind == "fastsim" and friction == 0.0):
             return NOTHING
         x, y, spin = creepages

@@ -132,7 +132,7 @@ class Model:
     @cached_property
     def fingerprint(self) -> bytes:
         """Hash of all that shapes a run apart from the parameters; 16 bytes."""
-        tangential = None if self.tangential is None else self.tangential.kind
+        tangential = None if self.tangential is None else self.tangential.to_parts()
         digest = hashlib.blake2b(repr((self.dx, self.start_inputs, tangential)).encode(), digest_size=16)
         meta, arrays = self.contact.to_parts()
         _update(digest, meta, arrays)

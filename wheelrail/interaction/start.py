@@ -131,7 +131,7 @@ def _steady_rolling(model: Model, solution: NormalSolution, inputs: Inputs) -> T
     if model.tangential is None:
         return None
     friction = model.parameters.friction_coefficient
-    return model.tangential.begin(solution, creepages_of(inputs), friction=friction, dx=model.dx)
+    return model.tangential.begin(solution, creepages_of(inputs), friction=friction, dx=model.dx, dt=model.dt)
 
 
 def _under_height(

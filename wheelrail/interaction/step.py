@@ -179,6 +179,7 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
             creepages_of(inputs),
             friction=model.parameters.friction_coefficient,
             dx=model.dx,
+            dt=model.dt,
             memory=state.tangential,
             motion=Motion(
                 rail_x - wheel_x - float(block[RAIL_X] - block[WHEEL_X]),
