@@ -330,7 +330,15 @@ _PARAMETERS = (
         minimum=0.0,
         nominal=10.0,
     ),
-    Variable("friction_coefficient", "parameter", "Real", "coefficient of friction", "1", minimum=0.0, nominal=0.1),
+    Variable(
+        "friction_coefficient",
+        "parameter",
+        "Real",
+        "coefficient of friction; static one mu_s of a law that depends on the slip velocity",
+        "1",
+        minimum=0.0,
+        nominal=0.1,
+    ),
     Variable(
         "start_position",
         "parameter",
@@ -394,7 +402,38 @@ _CONSTANTS = (
     Variable("case_title", "constant", "String", "title of the case the FMU was built from"),
 )
 
-VARIABLES: tuple[Variable, ...] = _INPUTS + _OUTPUTS + _PARAMETERS + _CALCULATED + _CONSTANTS
+# Added after the first release of the table.
+_FRICTION_OUTPUTS = (
+    Variable(
+        "friction_method",
+        "output",
+        "Integer",
+        "what found slip-velocity dependent friction, largest within the communication step: 0 friction is constant, "
+        "1 Newton's method, 2 Broyden's method, 3 direct iteration",
+        minimum=0.0,
+        maximum=3.0,
+    ),
+    Variable(
+        "friction_solutions",
+        "output",
+        "Integer",
+        "largest number of solutions of a step found within the communication step; 0 unless the case has "
+        "friction.find_solutions",
+        minimum=0.0,
+    ),
+    Variable(
+        "friction_force_spread",
+        "output",
+        "Real",
+        "largest difference between the tangential forces of these solutions",
+        "N",
+        "Force",
+        minimum=0.0,
+        nominal=1e3,
+    ),
+)
+
+VARIABLES: tuple[Variable, ...] = _INPUTS + _OUTPUTS + _PARAMETERS + _CALCULATED + _CONSTANTS + _FRICTION_OUTPUTS
 """Every variable; the place in the tuple is the FMI value reference."""
 
 INPUTS: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.role == "input")

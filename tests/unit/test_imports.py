@@ -25,7 +25,7 @@ FORBIDDEN_EVERYWHERE_BELOW = {"analysis", "study", "cli"}
 CORE = {"numerics", "wheel", "track", "excitation", "contact", "greens", "interaction"}
 
 # Of the interaction, what turns a case into a model.
-PREPARATION = {f"interaction/{name}.py" for name in ("build", "tracks", "wheel_sources", "wheels")}
+PREPARATION = {f"interaction/{name}.py" for name in ("build", "friction", "tracks", "wheel_sources", "wheels")}
 
 # Shipped inside the FMU.
 RUNTIME = [
@@ -40,6 +40,21 @@ RUNTIME = [
     *(
         f"contact/{name}.py"
         for name in ("influence", "half_space", "half_space_contact", "normal", "rolling", "tangential")
+    ),
+    *(f"contact/{name}.py" for name in ("slip_dependent_model", "slip_dependent_rolling")),
+    *(
+        f"contact/friction/{name}.py"
+        for name in (
+            "__init__",
+            "laws",
+            "memory",
+            "newton",
+            "problem",
+            "settings",
+            "solutions",
+            "solve",
+            "thesis_iteration",
+        )
     ),
     *(f"contact/creep/{name}.py" for name in ("__init__", "creep_force", "kalker_coefficients", "linear", "fastsim")),
     *(f"excitation/{name}.py" for name in ("line", "sampled_heights", "sinusoid", "sources", "spectrum_line")),

@@ -13,6 +13,7 @@ from ..contact.creep.linear import linear_creep_force
 from ..contact.creep.vermeulen_johnson import saturated_fraction
 from ..errors import CaseError
 from ..interaction.build import hertz_of
+from ..interaction.friction import static_friction_of
 from ..interaction.tracks import track_of
 from ..interaction.wheels import wheel_of
 from ..wheel.modes import FlexibleWheel
@@ -98,7 +99,9 @@ def sliding_loop(case: Case, *, x: float | None = None) -> SlidingLoop:
 
     hertz = hertz_of(case)
     # F = C d^1.5 about the preload.
-    return SlidingLoop(wheel, rail, 1.5 * hertz.load / hertz.approach, friction.coefficient, (creepage.x, creepage.y))
+    return SlidingLoop(
+        wheel, rail, 1.5 * hertz.load / hertz.approach, static_friction_of(case), (creepage.x, creepage.y)
+    )
 
 
 def case_stability(case: Case, *, x: float | None = None) -> CaseStability:
@@ -120,8 +123,7 @@ def case_stability(case: Case, *, x: float | None = None) -> CaseStability:
 
 def _saturation(case: Case) -> float:
     """Tangential force of steady rolling over the friction limit."""
-    hertz, contact, friction, creepage = hertz_of(case), case.contact, case.friction, case.creepage
-    assert friction is not None
+    hertz, contact, creepage = hertz_of(case), case.contact, case.creepage
     assert creepage is not None
     linear = linear_creep_force(
         creepage_x=creepage.x,
@@ -132,7 +134,7 @@ def _saturation(case: Case) -> float:
         shear_modulus=contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio)),
         poisson_ratio=contact.poisson_ratio,
     )
-    limit = friction.coefficient * hertz.load
+    limit = static_friction_of(case) * hertz.load
     if limit == 0.0:
         return 1.0
     return float(saturated_fraction(float(np.hypot(linear.force_x, linear.force_y)) / limit))

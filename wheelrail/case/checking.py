@@ -33,7 +33,7 @@ __all__ = ["CaseCheck"]
 
 Place = tuple[str | int, ...]
 
-SELECTORS = {**{section: (key,) for section, key in TAG_KEYS.items()}, "friction": ("law",)}
+SELECTORS = {section: (key,) for section, key in TAG_KEYS.items()}
 """Keys that decide which other keys a section has."""
 
 

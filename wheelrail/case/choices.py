@@ -6,7 +6,13 @@ from wheelrail.version import __version__
 
 __all__ = ["LATER_CHOICES", "LATER_KEYS", "TAG_KEYS", "not_available"]
 
-TAG_KEYS: dict[str, str] = {"wheel": "model", "track": "model", "contact": "normal", "excitation": "type"}
+TAG_KEYS: dict[str, str] = {
+    "wheel": "model",
+    "track": "model",
+    "contact": "normal",
+    "friction": "law",
+    "excitation": "type",
+}
 """Key that says which table a section is."""
 
 LATER_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
@@ -14,7 +20,7 @@ LATER_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
     ("track", "model"): (),
     ("contact", "normal"): (),
     ("contact", "tangential"): (),
-    ("friction", "law"): ("kraft", "polach", "table"),
+    ("friction", "law"): (),
     ("excitation", "type"): ("wheel-flat", "rail-joint"),
 }
 """Values by section and key; every key that selects a model is here, also where nothing is to come."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from wheelrail.case.friction_rules import friction_faults
 from wheelrail.case.structure_rules import structure_faults
 
 __all__ = ["cross_faults", "excitation_label", "shown"]
@@ -50,6 +51,7 @@ def cross_faults(data: Mapping[str, Any]) -> list[str]:
     faults += _odd_faults("contact.width", _positive(contact, "width"), "contact.dy", _positive(contact, "dy"))
     faults += _prefilter_faults(contact)
     faults += _tangential_faults(data)
+    faults += friction_faults(_table(data, "friction"), contact)
     excitations = data.get("excitation")
     for index, excitation in enumerate(excitations if isinstance(excitations, list) else ()):
         if isinstance(excitation, dict):
@@ -139,9 +141,9 @@ def _tangential_faults(data: Mapping[str, Any]) -> Iterator[str]:
     tangential = contact.get("tangential")
     if tangential == "transient" and contact.get("normal") in ("hertz", "winkler"):
         yield 'contact.tangential = "transient": only with contact.normal = "half-space"'
-    if tangential in ("transient", "fastsim") and "friction" not in data:
+    if tangential in ("transient", "friction-curve", "fastsim") and "friction" not in data:
         yield f'friction: missing; contact.tangential = "{tangential}" needs [friction] with law and coefficient'
-    if tangential in ("transient", "fastsim", "linear") and "creepage" not in data:
+    if tangential in ("transient", "friction-curve", "fastsim", "linear") and "creepage" not in data:
         yield (
             f'creepage: missing; contact.tangential = "{tangential}" needs the section [creepage] with x, y, spin; '
             "an FMU starts with these values"

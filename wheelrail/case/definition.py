@@ -11,7 +11,8 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 from wheelrail.case.consistency import cross_faults
 from wheelrail.case.excitations import Excitation
 from wheelrail.case.fields import Section, as_tuple
-from wheelrail.case.sections import Contact, Creepage, Friction, Load, Output, Simulation
+from wheelrail.case.friction_sections import Friction
+from wheelrail.case.sections import Contact, Creepage, Load, Output, Simulation
 from wheelrail.case.track_sections import Track
 from wheelrail.case.wheel_sections import Wheel
 

@@ -12,7 +12,6 @@ __all__ = [
     "OUTPUT_NAMES",
     "Contact",
     "Creepage",
-    "Friction",
     "HertzContact",
     "Load",
     "Output",
@@ -54,10 +53,10 @@ class _ContactBase(Section):
         description="Filter of the roughness before a hertz contact: none, the average over the nominal contact "
         "length, or the equivalent roughness of the Winkler bedding; winkler contact filters itself and takes none",
     )
-    tangential: Literal["none", "transient", "fastsim", "linear"] = Field(
+    tangential: Literal["none", "transient", "friction-curve", "fastsim", "linear"] = Field(
         default="none",
         description="Tangential contact model: none (vertical only); transient rolling after Kalker (with half-space); "
-        "FASTSIM; Kalker's linear theory",
+        "a point contact that follows a friction curve, with contact compliance; FASTSIM; Kalker's linear theory",
     )
     lateral_shift: float = quantity("Lateral displacement of the wheelset on the rail", "m", 0.0)
 
@@ -85,14 +84,6 @@ class HalfSpaceContact(_ContactBase):
     dy: float = quantity("Lateral element size", "m", gt=0)
     length: float = quantity("Length of the potential contact area, an odd number of dx", "m", gt=0)
     width: float = quantity("Width of the potential contact area, an odd number of dy", "m", gt=0)
-
-
-class Friction(Section):
-    """``[friction]``; without effect while there is no tangential contact model."""
-
-    law: Literal["constant"] = Field(description="Friction law: constant coefficient")
-    coefficient: float = quantity("Friction coefficient", "1", ge=0)
-    memory_distance: float = quantity("Friction memory; 0 = none, and no effect under a constant law", "m", 0.0, ge=0)
 
 
 class Load(Section):
@@ -140,6 +131,9 @@ OutputName = Literal[
     "distance",
     "solver_iterations",
     "solver_residual",
+    "friction_method",
+    "friction_solutions",
+    "friction_force_spread",
 ]
 OUTPUT_NAMES: tuple[str, ...] = OutputName.__args__
 """Output ports that can be recorded."""

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from ..errors import ModelFileError
 from .bedding import WinklerBedding
+from .friction.settings import SlipFriction
 from .half_space_contact import HalfSpaceContact
+from .slip_dependent_model import SlipDependentRolling
 from .solution import NormalContact
 from .spring import HertzSpring
 from .tangential_models import CreepForceLaw, TangentialModel, TransientRolling
@@ -42,7 +44,8 @@ def tangential_model(meta: Mapping[str, Any], normal: NormalContact) -> Tangenti
     Parameters
     ----------
     meta : mapping
-        ``kind``; for the laws ``shear_modulus`` in Pa and ``poisson_ratio``.
+        ``kind``; for the laws ``shear_modulus`` in Pa and ``poisson_ratio``; ``friction``, as `SlipFriction` describes
+        itself, where it depends on the slip velocity.
     normal : NormalContact
         Gives the grid for "transient".
 
@@ -54,8 +57,13 @@ def tangential_model(meta: Mapping[str, Any], normal: NormalContact) -> Tangenti
     kind = meta.get("kind")
     if kind == "none":
         return None
+    try:
+        friction = SlipFriction.from_parts(meta["friction"]) if meta.get("friction") else None
+    except (KeyError, TypeError, ValueError) as error:
+        raise ModelFileError(f"the model holds a damaged friction law: {error}") from error
     if kind == "transient" and isinstance(normal, HalfSpaceContact):
-        return TransientRolling(normal.half_space)
+        grid = normal.half_space
+        return TransientRolling(grid) if friction is None else SlipDependentRolling(grid, friction)
     if kind in ("fastsim", "linear"):
         return CreepForceLaw(kind, meta["shear_modulus"], meta["poisson_ratio"])
     raise ModelFileError(f"the model holds a tangential contact {kind!r} that does not go with its normal contact")

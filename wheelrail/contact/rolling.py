@@ -11,11 +11,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .friction.problem import SlipFrictionState
 from .half_space import HalfSpace
 from .normal import NormalState
 from .tangential import TangentialProblem, TangentialState, influence_matrix, solve_tangential
 
-__all__ = ["RollingState", "friction_work", "resultants", "rigid_shift", "roll", "steady_rolling"]
+__all__ = [
+    "RollingState",
+    "carried_matrix",
+    "friction_work",
+    "on_grid",
+    "resultants",
+    "rigid_shift",
+    "roll",
+    "steady_rolling",
+]
 
 STEADY_TOLERANCE = 1e-10  # of the residual of the steady equations
 TRANSIENT_STEPS = 8  # between attempts of Newton's method on the steady equations
@@ -41,6 +51,8 @@ class RollingState:
         Work of friction in the step, J, see `friction_work`.
     iterations : int
     residual : float
+    slip : ndarray, shape (2, n)
+        Slip distance S of the step in m, 0 in stick and outside the contact.
     """
 
     tractions: NDArray
@@ -52,6 +64,7 @@ class RollingState:
     friction_work: float
     iterations: int
     residual: float
+    slip: NDArray
 
 
 def rigid_shift(
@@ -156,23 +169,43 @@ def roll(
     if compliance is not None:
         force = half_space.element_area * solution.tractions.sum(axis=1)
         shift = shift + (compliance @ force)[:, None]
-    return _on_grid(half_space, contact, solution, shift=shift, previous=previous, carried=carried)
+    return on_grid(half_space, contact, solution, shift=shift, previous=previous, carried=carried)
 
 
-def _on_grid(
+def on_grid(
     half_space: HalfSpace,
     contact: NDArray,
-    solution: TangentialState,
+    solution: TangentialState | SlipFrictionState,
     *,
     shift: NDArray,
     previous: NDArray | None = None,
     carried: NDArray | None = None,
 ) -> RollingState:
-    """Spread a solution over the grid; without a previous step it is steady."""
+    """Spread a solution over the grid.
+
+    Parameters
+    ----------
+    half_space : HalfSpace
+    contact : ndarray of int, shape (k,)
+    solution : TangentialState or SlipFrictionState
+        Of the k elements in contact.
+    shift : ndarray, shape (2, n)
+        Rigid shift W, m.
+    previous : ndarray, shape (2, n), optional
+        Tractions of the step before, Pa; left out: rolling is steady.
+    carried : ndarray, shape (2, n), optional
+        Displacement of the particles before the step, m, if it is at hand.
+
+    Returns
+    -------
+    RollingState
+    """
     tractions = np.zeros((2, half_space.elements))
     tractions[:, contact] = solution.tractions
     slipping = np.zeros(half_space.elements, dtype=bool)
     slipping[contact] = solution.slipping
+    slip = np.zeros((2, half_space.elements))
+    slip[:, contact] = solution.slip
     force_x, force_y, moment = resultants(half_space, tractions)
     return RollingState(
         tractions=tractions,
@@ -190,7 +223,19 @@ def _on_grid(
         ),
         iterations=solution.iterations,
         residual=solution.residual,
+        slip=slip,
     )
+
+
+def carried_matrix(half_space: HalfSpace, contact: NDArray) -> NDArray:
+    """Matrix A' that carries tractions of one step into the next, shape (2 k, 2 k), for elements of shape (k,)."""
+    k, table = len(contact), half_space.shifted
+    pairs = half_space.pairs(contact, contact)
+    carried = np.empty((2 * k, 2 * k))
+    carried[:k, :k] = table.a11.ravel().take(pairs)
+    carried[k:, k:] = table.a22.ravel().take(pairs)
+    carried[:k, k:] = carried[k:, :k] = table.a12.ravel().take(pairs)
+    return carried
 
 
 def steady_rolling(
@@ -232,15 +277,8 @@ def steady_rolling(
     )
     problem = TangentialProblem(half_space, contact, friction * normal.pressure[contact], shift[:, contact])
     if len(contact) == 0:
-        return _on_grid(half_space, contact, solve_tangential(problem), shift=shift)
-    k = len(contact)
-    pairs = half_space.pairs(contact, contact)
-    carried = np.empty((2 * k, 2 * k))
-    table = half_space.shifted
-    carried[:k, :k] = table.a11.ravel().take(pairs)
-    carried[k:, k:] = table.a22.ravel().take(pairs)
-    carried[:k, k:] = carried[k:, :k] = table.a12.ravel().take(pairs)
-    matrix = influence_matrix(problem) - carried
+        return on_grid(half_space, contact, solve_tangential(problem), shift=shift)
+    matrix = influence_matrix(problem) - carried_matrix(half_space, contact)
     tractions = np.zeros((2, half_space.elements))
     best: TangentialState | None = None
     iterations = 0
@@ -256,4 +294,4 @@ def steady_rolling(
         if best.residual <= STEADY_TOLERANCE:
             break
     assert best is not None
-    return replace(_on_grid(half_space, contact, best, shift=shift), iterations=iterations)
+    return replace(on_grid(half_space, contact, best, shift=shift), iterations=iterations)

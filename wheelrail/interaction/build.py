@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -18,6 +19,7 @@ from ..contact.spring import HertzSpring, averaging_weights
 from ..contact.tangential_models import TangentialModel
 from ..errors import CaseError
 from ..excitation.prepare import prepare_source
+from .friction import slip_friction_of, static_friction_of
 from .inputs import Inputs
 from .model import Model
 from .parameters import OWN_SEEDS, Parameters
@@ -89,7 +91,7 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
     report["excitation"] = notes
     parameters = Parameters(
         speed=simulation.speed,
-        friction_coefficient=0.0 if case.friction is None else case.friction.coefficient,
+        friction_coefficient=static_friction_of(case),
         start_position=simulation.start_position,
         lateral_position=0.0,
         coupling=case.load.coupling,
@@ -130,7 +132,14 @@ def _start_inputs(case: Case) -> Inputs:
 def _tangential_of(case: Case, normal: NormalContact) -> TangentialModel | None:
     contact = case.contact
     shear_modulus = contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio))
-    meta = {"kind": contact.tangential, "shear_modulus": shear_modulus, "poisson_ratio": contact.poisson_ratio}
+    meta: dict[str, Any] = {
+        "kind": contact.tangential,
+        "shear_modulus": shear_modulus,
+        "poisson_ratio": contact.poisson_ratio,
+    }
+    friction = slip_friction_of(case)
+    if friction is not None:
+        meta["friction"] = friction.to_parts()
     return tangential_model(meta, normal)
 
 

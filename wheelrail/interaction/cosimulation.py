@@ -24,7 +24,18 @@ from .inputs import INPUT_NAMES, Inputs
 from .model import Model
 from .parameters import is_finite_number
 from .start import start
-from .state import FORCE, FORCE_X, FORCE_Y, ITERATIONS, RESIDUAL, RESULTS, State
+from .state import (
+    FORCE,
+    FORCE_X,
+    FORCE_Y,
+    ITERATIONS,
+    METHOD,
+    RESIDUAL,
+    RESULTS,
+    SOLUTIONS,
+    SPREAD,
+    State,
+)
 from .step import step
 
 __all__ = ["OUTPUT_NAMES", "RESIDUAL_LIMIT", "CoSimulation"]
@@ -39,14 +50,22 @@ _STEP_RESULTS = (
     "force_z_mean",
     "force_z_max",
     "force_z_min",
-    "solver_iterations",
-    "solver_residual",
 )
-OUTPUT_NAMES = (*RESULTS, *_STEP_RESULTS, "in_contact", "distance")
+LARGEST = {
+    "solver_iterations": ITERATIONS,
+    "solver_residual": RESIDUAL,
+    "friction_method": METHOD,
+    "friction_solutions": SOLUTIONS,
+    "friction_force_spread": SPREAD,
+}
+"""Outputs that are the largest value within the communication step, and their place in the state."""
+COUNTS = ("solver_iterations", "friction_method", "friction_solutions")
+"""Those that are whole numbers."""
+OUTPUT_NAMES = (*RESULTS, *_STEP_RESULTS, *LARGEST, "in_contact", "distance")
 
 _MEANS = {"force_x_mean": 0, "force_y_mean": 1, "force_z_mean": 2}
 
-_MAGIC = b"WRSTATE3"
+_MAGIC = b"WRSTATE4"
 _CHECKSUM_BYTES, _FINGERPRINT_BYTES = 16, 16
 
 
@@ -159,8 +178,8 @@ class CoSimulation:
         self._clear_clock()
         self._means = _forces(state.block)
         self._largest = self._smallest = float(state.block[FORCE])
-        self._iterations, self._residual = int(state.block[ITERATIONS]), float(state.block[RESIDUAL])
-        self._check_residual(self._residual)
+        self._worst = [float(state.block[place]) for place in LARGEST.values()]
+        self._check_residual(float(state.block[RESIDUAL]))
 
     def _current(self) -> State:
         if self._stale or self._state is None:
@@ -208,8 +227,9 @@ class CoSimulation:
             self._backup = np.empty_like(block)
         np.copyto(self._backup, block)
         inputs, extrapolate = self._inputs, self._slopes()
-        totals = [0.0, 0.0, 0.0]
-        largest, smallest, iterations, residual = -math.inf, math.inf, 0, 0.0
+        totals, places = [0.0, 0.0, 0.0], list(LARGEST.values())
+        largest, smallest = -math.inf, math.inf
+        worst = [0.0] * len(LARGEST)
         try:
             with one_thread():
                 for _ in range(count):
@@ -222,8 +242,7 @@ class CoSimulation:
                     forces = _forces(block)
                     totals = [total + force for total, force in zip(totals, forces, strict=True)]
                     largest, smallest = max(largest, forces[2]), min(smallest, forces[2])
-                    iterations = max(iterations, int(block[ITERATIONS]))
-                    residual = max(residual, float(block[RESIDUAL]))
+                    worst = [max(before, float(block[place])) for before, place in zip(worst, places, strict=True)]
                     if recorder is not None:
                         rows.append((state.step * model.dt, *forces))
             if recorder is not None:
@@ -236,8 +255,8 @@ class CoSimulation:
             return
         self._means = tuple(total / count for total in totals)
         self._largest, self._smallest = largest, smallest
-        self._iterations, self._residual = iterations, residual
-        self._check_residual(residual)
+        self._worst = worst
+        self._check_residual(worst[places.index(RESIDUAL)])
 
     def _slopes(self) -> tuple[float, ...] | None:
         """Slopes of the inputs over the last communication step, for linear extrapolation."""
@@ -272,10 +291,9 @@ class CoSimulation:
             return self._largest
         if name == "force_z_min":
             return self._smallest
-        if name == "solver_iterations":
-            return self._iterations
-        if name == "solver_residual":
-            return self._residual
+        if name in LARGEST:
+            value = self._worst[list(LARGEST).index(name)]
+            return int(value) if name in COUNTS else value
         if name == "in_contact":
             return bool(state.block[FORCE] > 0.0)
         if name == "distance":
@@ -293,7 +311,7 @@ class CoSimulation:
             "elapsed": self._elapsed,
             "lost": self._lost,
             "advanced": self._advanced,
-            "results": [self._means, self._largest, self._smallest, self._iterations, self._residual],
+            "results": [self._means, self._largest, self._smallest, self._worst],
         }
         text = json.dumps(header, sort_keys=True).encode()
         content = self._base.fingerprint + struct.pack("<Q", len(text)) + text + state.to_bytes()
@@ -323,7 +341,7 @@ class CoSimulation:
             state = State.from_bytes(model, data[start_of_text + length :])
             inputs = Inputs(*header["inputs"])
             previous = None if header["previous"] is None else Inputs(*header["previous"])
-            means, largest, smallest, iterations, residual = header["results"]
+            means, largest, smallest, worst = header["results"]
             previous_time, elapsed, lost = header["previous_time"], header["elapsed"], header["lost"]
             advanced = header["advanced"]
         except (ValueError, KeyError, TypeError, ParameterError) as error:
@@ -331,8 +349,7 @@ class CoSimulation:
         self.model, self._state, self._stale = model, state, False
         self._inputs, self._previous, self._previous_time = inputs, previous, previous_time
         self._elapsed, self._lost, self._advanced = elapsed, lost, advanced
-        self._means, self._largest, self._smallest = tuple(means), largest, smallest
-        self._iterations, self._residual = iterations, residual
+        self._means, self._largest, self._smallest, self._worst = tuple(means), largest, smallest, worst
 
     def digest(self) -> str:
         """Hash of `save`: equal runs have equal digests."""

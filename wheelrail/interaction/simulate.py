@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError, WheelrailError
-from .cosimulation import OUTPUT_NAMES, REACHED, RESIDUAL_LIMIT
+from .cosimulation import COUNTS, LARGEST, OUTPUT_NAMES, REACHED, RESIDUAL_LIMIT
 from .inputs import Inputs
 from .model import Model
 from .start import height_for_load, start
-from .state import FORCE, FORCE_X, FORCE_Y, ITERATIONS, RESIDUAL, RESULTS, SCALARS, State
+from .state import FORCE, FORCE_X, FORCE_Y, RESIDUAL, RESULTS, SCALARS, State
 from .step import step
 
 __all__ = ["BLOCK", "Simulation", "Statistics", "simulate", "stand_alone_inputs", "step_count"]
@@ -34,8 +34,7 @@ _PER_STEP = {
     "force_z_mean": FORCE,
     "force_z_max": FORCE,
     "force_z_min": FORCE,
-    "solver_residual": RESIDUAL,
-    "solver_iterations": ITERATIONS,
+    **LARGEST,
 }
 
 
@@ -213,8 +212,8 @@ class Simulation:
         for name in self.record:
             if name == "in_contact":
                 block[name] = rows[:, FORCE] > 0.0
-            elif name == "solver_iterations":
-                block[name] = rows[:, ITERATIONS].astype(np.int64)
+            elif name in COUNTS:
+                block[name] = rows[:, LARGEST[name]].astype(np.int64)
             elif name != "distance":
                 block[name] = rows[:, _PER_STEP[name]].copy()
         return block

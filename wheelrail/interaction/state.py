@@ -22,7 +22,9 @@ FORCE_X, FORCE_Y, MOMENT, SLIP, POWER = range(14, 19)
 WHEEL_X, WHEEL_Y, RAIL_X, RAIL_Y = range(19, 23)
 # What the vehicle's guiding forces are beyond the inputs: the balance of the tangential forces at the start.
 GUIDE_X, GUIDE_Y = 23, 24
-SCALARS = 25
+# What found the friction coefficients, how many solutions there are, and how far their forces differ.
+METHOD, SOLUTIONS, SPREAD = 25, 26, 27
+SCALARS = 28
 
 RESULTS = {
     "force_z": FORCE,

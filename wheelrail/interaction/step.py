@@ -41,6 +41,7 @@ from .state import (
     HEAD,
     ITERATIONS,
     LENGTH,
+    METHOD,
     MOMENT,
     OFFSET,
     POWER,
@@ -50,6 +51,8 @@ from .state import (
     RAIL_Y,
     RESIDUAL,
     SLIP,
+    SOLUTIONS,
+    SPREAD,
     STEP,
     STIFFNESS,
     WHEEL,
@@ -91,6 +94,9 @@ def store_tangential(model: Model, state: State, solution: TangentialSolution | 
     block[POWER] = solution.friction_work / model.dt
     block[ITERATIONS] = max(block[ITERATIONS], solution.iterations)
     block[RESIDUAL] = max(block[RESIDUAL], solution.residual)
+    block[METHOD] = solution.friction_method
+    block[SOLUTIONS] = solution.friction_solutions
+    block[SPREAD] = solution.friction_force_spread
     if solution.memory is not None:
         state.tangential[:] = solution.memory
 

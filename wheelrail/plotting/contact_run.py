@@ -10,8 +10,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wheelrail.contact.half_space_contact import HalfSpaceContact
+from wheelrail.contact.slip_dependent_model import SlipDependentRolling
 from wheelrail.contact.tangential_models import TransientRolling
 from wheelrail.interaction.model import Model
 from wheelrail.interaction.simulate import stand_alone_inputs
@@ -41,9 +43,13 @@ def contact_of(model: Model, state: State) -> ContactMap:
     grid = model.contact.half_space
     shape = (grid.my, grid.mx)
     tractions, slipping = np.zeros((2, *shape)), np.zeros(shape, dtype=bool)
-    if isinstance(model.tangential, TransientRolling):
-        tractions = state.tangential[: 2 * grid.elements].reshape(2, *shape).copy()
-        slipping = state.tangential[2 * grid.elements :].reshape(shape) > 0.5
+    friction: float | NDArray = model.parameters.friction_coefficient
+    if isinstance(model.tangential, TransientRolling | SlipDependentRolling):
+        n = grid.elements
+        tractions = state.tangential[: 2 * n].reshape(2, *shape).copy()
+        slipping = state.tangential[2 * n : 3 * n].reshape(shape) > 0.5
+    if isinstance(model.tangential, SlipDependentRolling):
+        friction = model.tangential.coefficients(state.tangential).reshape(shape).copy()
     pressure = state.normal.reshape(shape).copy()
     return ContactMap(
         x=grid.x[: grid.mx],
@@ -52,7 +58,7 @@ def contact_of(model: Model, state: State) -> ContactMap:
         tractions=tractions,
         contact=pressure > 0.0,
         slipping=slipping,
-        friction=model.parameters.friction_coefficient,
+        friction=friction,
     )
 
 

@@ -38,8 +38,11 @@ OUTPUTS: dict[str, tuple[str, str]] = {
     "distance": ("m", "rolled distance since the start"),
     "solver_iterations": ("1", "evaluations of the contact law"),
     "solver_residual": ("1", "relative residual of the contact solution"),
+    "friction_method": ("1", "what found the friction: 0 given, 1 Newton, 2 Broyden, 3 direct iteration"),
+    "friction_solutions": ("1", "solutions of the step that were found, 0 if not looked for"),
+    "friction_force_spread": ("N", "largest difference of their tangential forces"),
 }
 """Unit (as UDUNITS writes it) and long name of every output that can be recorded."""
 
-TYPES = {"in_contact": "i1", "solver_iterations": "i4"}
+TYPES = {"in_contact": "i1", "solver_iterations": "i4", "friction_method": "i1", "friction_solutions": "i2"}
 """netCDF types of the outputs that are no floating-point numbers."""

@@ -145,10 +145,6 @@ SINGLE = [
         "an FMU starts with these values",
     ),
     (
-        {"friction": {"law": "kraft", "coefficient": 0.3, "normalise": True}},
-        f'friction.law = "kraft": {VERSION_WORDS}; available: constant',
-    ),
-    (
         {"excitation": [{"type": "wheel-flat", "depth": 1e-3, "length": 0.1, "shape": "new"}]},
         f'excitation #1.type = "wheel-flat": {VERSION_WORDS}; available: sinusoid, measured, spectrum',
     ),

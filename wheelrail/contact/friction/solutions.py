@@ -1,0 +1,99 @@
+"""All solutions of a step with slip-velocity dependent friction that can be found.
+
+Full stick and full slip as guesses lead to the solutions with the least and the most slip. Where they differ there is a
+third one between them, from which iterating between contact and law runs away to either side (Vollebregt and
+Schuttelaars 2012, J. Sound Vib. 331, 2141-2155); only Newton's method finds it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .newton import is_repelling, newton
+from .problem import TOLERANCE, SlipFrictionProblem, SlipFrictionState
+from .solve import solve_slip_friction
+
+__all__ = ["Solution", "find_solutions", "force_spread"]
+
+_SAME = 1e-6  # of the largest bound: tractions that differ by less are one solution
+_BETWEEN = (0.5, 0.25, 0.75)  # guesses between two solutions
+
+
+class Solution(NamedTuple):
+    """One of several solutions.
+
+    Attributes
+    ----------
+    name : str
+        "low-slip", "middle" or "high-slip"; "only" if there is no other.
+    state : SlipFrictionState
+    repelling : bool
+        Whether iterating between contact and law runs away from it.
+    """
+
+    name: str
+    state: SlipFrictionState
+    repelling: bool
+
+
+def find_solutions(problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray) -> tuple[Solution, ...]:
+    """Look for all solutions.
+
+    Parameters
+    ----------
+    problem : SlipFrictionProblem
+    tractions : ndarray, shape (2, k)
+        Of the step before, Pa.
+    speed : ndarray, shape (k,)
+        Slip velocities of the step before, m/s.
+
+    Returns
+    -------
+    tuple of Solution
+        In order of slip; of those looked for none is left out that was found.
+    """
+    found: list[SlipFrictionState] = []
+    for guess in (np.zeros_like(speed), problem.speed(problem.shift), speed):
+        _add(found, solve_slip_friction(problem, tractions, guess))
+    if len(problem.contact):
+        _try_newton(problem, tractions, found)
+    if len(found) > 1:
+        found.sort(key=_slip)
+        low, high = found[0].tractions, found[-1].tractions
+        for share in _BETWEEN:
+            _try_newton(problem, low + share * (high - low), found)
+    found.sort(key=_slip)
+    names = ["only"] if len(found) == 1 else ["low-slip", *["middle"] * (len(found) - 2), "high-slip"]
+    return tuple(
+        Solution(name, state, len(problem.contact) > 0 and is_repelling(problem, state.tractions))
+        for name, state in zip(names, found, strict=True)
+    )
+
+
+def force_spread(problem: SlipFrictionProblem, solutions: tuple[Solution, ...]) -> float:
+    """Return the largest difference between the tangential forces of solutions, N."""
+    forces = [problem.half_space.element_area * each.state.tractions.sum(axis=1) for each in solutions]
+    return max(float(np.hypot(*(one - other))) for one in forces for other in forces)
+
+
+def _try_newton(problem: SlipFrictionProblem, tractions: NDArray, found: list[SlipFrictionState]) -> None:
+    solution, steps, converged = newton(problem, tractions)
+    if converged:
+        _add(found, problem.state(solution, steps, "newton"))
+
+
+def _add(found: list[SlipFrictionState], state: SlipFrictionState) -> None:
+    if found and not state.residual <= TOLERANCE:
+        return
+    scale = max((float(np.abs(each.tractions).max(initial=0.0)) for each in [*found, state]), default=0.0)
+    for each in found:
+        if float(np.abs(each.tractions - state.tractions).max(initial=0.0)) <= _SAME * scale:
+            return
+    found.append(state)
+
+
+def _slip(state: SlipFrictionState) -> float:
+    return float(np.hypot(state.slip[0], state.slip[1]).sum())

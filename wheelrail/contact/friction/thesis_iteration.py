@@ -1,0 +1,106 @@
+"""The iteration of Pieringer (2011), section 3.6.2: contact and friction law in turn.
+
+    g(mu) = mu - f(s(mu)) = 0,     s(mu) from the contact for given coefficients (eq. 3.56)
+
+Broyden's method first; if it fails, the direct iteration mu <- f(s(mu)), relaxed when it swings. The guess are the
+coefficients that the slip of the previous step gives.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .problem import TOLERANCE, SlipFrictionProblem, SlipFrictionState
+
+__all__ = ["broyden", "fixed_point", "solve_as_thesis"]
+
+MAXIMUM_BROYDEN = 40
+MAXIMUM_FIXED_POINT = 400
+_PATIENCE = 12  # direct iterations without progress, after which they are relaxed
+_RELAX, _SMALLEST = 0.7, 0.05
+
+
+def solve_as_thesis(problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray) -> SlipFrictionState:
+    """Solve by Broyden's method, or else by the direct iteration.
+
+    Parameters
+    ----------
+    problem : SlipFrictionProblem
+    tractions : ndarray, shape (2, k)
+        Nearby, Pa.
+    speed : ndarray, shape (k,)
+        Slip velocities nearby, m/s.
+
+    Returns
+    -------
+    SlipFrictionState
+        With a residual above `TOLERANCE` if neither method converged; the better one's.
+    """
+    first = broyden(problem, tractions, speed)
+    if first.residual <= TOLERANCE:
+        return first
+    second = fixed_point(problem, tractions, speed)
+    best = second if second.residual <= first.residual else first
+    return best._replace(iterations=first.iterations + second.iterations)
+
+
+def broyden(problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray) -> SlipFrictionState:
+    """Solve by Broyden's (good) method with the identity as first Jacobian; parameters as `solve_as_thesis`."""
+    mu = problem.coefficient(speed)[0]
+    state = problem.solve_for(mu, tractions)
+    g = mu - problem.coefficient(problem.speed(state.slip))[0]
+    inverse = np.eye(len(mu))
+    best, smallest, count = state.tractions, np.inf, 1
+    while count < MAXIMUM_BROYDEN:
+        residual = problem.evaluate(state.tractions).residual
+        if residual < smallest:
+            best, smallest = state.tractions, residual
+        if residual <= TOLERANCE:
+            break
+        step = -inverse @ g
+        if not np.all(mu + step > 0.0):  # no friction coefficients any more: it has gone astray
+            break
+        mu = mu + step
+        state = problem.solve_for(mu, state.tractions)
+        count += 1
+        new = mu - problem.coefficient(problem.speed(state.slip))[0]
+        mapped = inverse @ (new - g)
+        size = float(step @ mapped)
+        if size == 0.0:
+            break
+        inverse += np.outer((step - mapped) / size, step @ inverse)
+        g = new
+    return problem.state(best, count, "broyden")
+
+
+def fixed_point(
+    problem: SlipFrictionProblem,
+    tractions: NDArray,
+    speed: NDArray,
+    *,
+    maximum: int = MAXIMUM_FIXED_POINT,
+) -> SlipFrictionState:
+    """Solve by direct iteration with relaxation; parameters as `solve_as_thesis`.
+
+    Started from full stick (speed 0) it comes to the solution with the least slip, from full slip to that with the
+    most: more slip lowers the coefficients, and lower coefficients give more slip everywhere.
+    """
+    mu = problem.coefficient(speed)[0]
+    relaxation, since, smallest, best = 1.0, 0, np.inf, tractions
+    count = 0
+    while count < maximum:
+        tractions = problem.solve_for(mu, tractions).tractions
+        count += 1
+        at = problem.evaluate(tractions)
+        if at.residual < smallest:
+            since = 0 if at.residual < 0.9 * smallest else since + 1
+            best, smallest = tractions, at.residual
+        else:
+            since += 1
+        if at.residual <= TOLERANCE:
+            break
+        if since >= _PATIENCE and relaxation > _SMALLEST:
+            relaxation, since = relaxation * _RELAX, 0
+        mu = mu + relaxation * (at.coefficient - mu)
+    return problem.state(best, count, "fixed-point")
