@@ -6,8 +6,9 @@ sticking element gives S = 0; a slipping one, with n the direction of its trial 
     n p = f(s) p3,     t p = 0,     d s = e dS / dt,     dS = A dp.
 
 The method converges in a few steps from a good guess, also to solutions from which iterating between contact and law
-runs away: those lie between two others (Vollebregt and Schuttelaars 2012). There the determinant of the Jacobian is
-negative: it has the sign of det(1 - T'), T' the derivative of that iteration.
+runs away: those lie between two others (Vollebregt and Schuttelaars 2012). With T' the derivative of that iteration,
+they have eigenvalues of T' above 1. The determinant of the Jacobian has the sign of det(1 - T'), so that a negative one
+tells that there is an odd number of them.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from .problem import TOLERANCE, Evaluation, SlipFrictionProblem
 
-__all__ = ["is_repelling", "newton"]
+__all__ = ["is_repelling", "is_reversed", "newton"]
 
 MAXIMUM_STEPS = 12
 _SHARES = (1.0, 0.5, 0.25)
@@ -58,10 +59,37 @@ def newton(problem: SlipFrictionProblem, tractions: NDArray) -> tuple[NDArray, i
     return tractions, MAXIMUM_STEPS, at.residual <= TOLERANCE
 
 
-def is_repelling(problem: SlipFrictionProblem, tractions: NDArray) -> bool:
-    """Tell whether iterating between contact and law runs away from a solution, tractions in Pa of shape (2, k)."""
+def is_reversed(problem: SlipFrictionProblem, tractions: NDArray) -> bool:
+    """Tell whether the determinant of the Jacobian is negative at a solution, tractions in Pa of shape (2, k)."""
     matrix, _ = _system(problem, tractions, problem.evaluate(tractions))
     return bool(np.linalg.slogdet(matrix)[0] < 0.0)
+
+
+def is_repelling(problem: SlipFrictionProblem, tractions: NDArray) -> bool:
+    """Tell whether iterating between contact and law runs away from a solution.
+
+    Parameters
+    ----------
+    problem : SlipFrictionProblem
+    tractions : ndarray, shape (2, k)
+        Of a solution, Pa.
+
+    Returns
+    -------
+    bool
+        Whether an eigenvalue of the iteration's derivative has a real part above 1; relaxation can't cure that.
+    """
+    at = problem.evaluate(tractions)
+    slide = np.flatnonzero(at.size > at.bound)
+    if len(slide) == 0:
+        return False
+    k = len(at.bound)
+    given, _ = _system(problem, tractions, at._replace(slope=np.zeros(k)))
+    drive = np.zeros((2 * k, len(slide)))
+    drive[slide, np.arange(len(slide))] = problem.pressure[slide]
+    # What the coefficients of the slipping elements do to the bounds, over the pressure: f'(s) ds/dmu.
+    derivative = -_bound_change(problem, at, slide) @ np.linalg.solve(given, drive)
+    return bool(np.linalg.eigvals(derivative / problem.pressure[slide, None]).real.max() > 1.0)
 
 
 def _system(problem: SlipFrictionProblem, p: NDArray, at: Evaluation) -> tuple[NDArray, NDArray]:

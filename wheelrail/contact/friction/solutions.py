@@ -7,7 +7,8 @@ Schuttelaars 2012, J. Sound Vib. 331, 2141-2155); only Newton's method finds it.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,24 +20,31 @@ from .solve import solve_slip_friction
 __all__ = ["Solution", "find_solutions", "force_spread"]
 
 _SAME = 1e-6  # of the largest bound: tractions that differ by less are one solution
-_BETWEEN = (0.5, 0.25, 0.75)  # guesses between two solutions
+_HALVINGS = 16  # of the way between two solutions
+_ITERATIONS = 60  # between contact and law, after which one of the two should show
+_DECIDED = 0.005  # share of the way to a solution within which the iteration has decided for it
 
 
-class Solution(NamedTuple):
+@dataclass(frozen=True)
+class Solution:
     """One of several solutions.
 
     Attributes
     ----------
     name : str
         "low-slip", "middle" or "high-slip"; "only" if there is no other.
+    problem : SlipFrictionProblem
     state : SlipFrictionState
-    repelling : bool
-        Whether iterating between contact and law runs away from it.
     """
 
     name: str
+    problem: SlipFrictionProblem
     state: SlipFrictionState
-    repelling: bool
+
+    @cached_property
+    def repelling(self) -> bool:
+        """Whether iterating between contact and law runs away from it."""
+        return is_repelling(self.problem, self.state.tractions)
 
 
 def find_solutions(problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray) -> tuple[Solution, ...]:
@@ -60,23 +68,49 @@ def find_solutions(problem: SlipFrictionProblem, tractions: NDArray, speed: NDAr
         _add(found, solve_slip_friction(problem, tractions, guess))
     if len(problem.contact):
         _try_newton(problem, tractions, found)
-    if len(found) > 1:
-        found.sort(key=_slip)
-        low, high = found[0].tractions, found[-1].tractions
-        for share in _BETWEEN:
-            _try_newton(problem, low + share * (high - low), found)
     found.sort(key=_slip)
+    if len(found) == 2:
+        _try_newton(problem, _watershed(problem, *found), found)
+        found.sort(key=_slip)
     names = ["only"] if len(found) == 1 else ["low-slip", *["middle"] * (len(found) - 2), "high-slip"]
-    return tuple(
-        Solution(name, state, len(problem.contact) > 0 and is_repelling(problem, state.tractions))
-        for name, state in zip(names, found, strict=True)
-    )
+    return tuple(Solution(name, problem, state) for name, state in zip(names, found, strict=True))
 
 
 def force_spread(problem: SlipFrictionProblem, solutions: tuple[Solution, ...]) -> float:
     """Return the largest difference between the tangential forces of solutions, N."""
     forces = [problem.half_space.element_area * each.state.tractions.sum(axis=1) for each in solutions]
     return max(float(np.hypot(*(one - other))) for one in forces for other in forces)
+
+
+def _watershed(problem: SlipFrictionProblem, low: SlipFrictionState, high: SlipFrictionState) -> NDArray:
+    """Return tractions near the solution between two others, shape (2, k).
+
+    Iterations that start on either side of it go to different solutions; one that starts close to the border passes
+    close to the solution that repels.
+    """
+    slow, fast = problem.speed(low.slip), problem.speed(high.slip)
+    from_low, from_high = float(slow.sum()), float(fast.sum())
+    below, above, nearest = 0.0, 1.0, low.tractions
+    for _ in range(_HALVINGS):
+        place = share = 0.5 * (below + above)
+        speed, tractions, smallest, passing = slow + share * (fast - slow), low.tractions, np.inf, True
+        candidate = tractions
+        for _ in range(_ITERATIONS):
+            tractions = problem.solve_for(problem.coefficient(speed)[0], tractions).tractions
+            at = problem.evaluate(tractions)
+            speed = problem.speed(at.slip)
+            place = (float(speed.sum()) - from_low) / (from_high - from_low)
+            if at.residual < smallest:
+                smallest, passing, candidate = at.residual, True, tractions
+            elif passing:  # it comes no closer: what repels is behind it
+                nearest, passing, smallest = candidate, False, 0.0
+            if not _DECIDED < place < 1.0 - _DECIDED:
+                break
+        if place < 0.5:
+            below = share
+        else:
+            above = share
+    return nearest
 
 
 def _try_newton(problem: SlipFrictionProblem, tractions: NDArray, found: list[SlipFrictionState]) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..tangential import accelerated_gradient
-from .newton import is_repelling, newton
+from .newton import is_reversed, newton
 from .problem import SlipFrictionProblem, SlipFrictionState
 from .thesis_iteration import fixed_point, solve_as_thesis
 
@@ -63,7 +63,7 @@ def solve_slip_friction(
             p = fixed_point(problem, p, speed, maximum=rounds // 8).tractions
         solution, steps, converged = newton(problem, p)
         count += steps
-        if converged and (steps <= _CERTAIN or not is_repelling(problem, solution)):
+        if converged and (steps <= _CERTAIN or not is_reversed(problem, solution)):
             return problem.state(solution, count, "newton")
         speed = problem.speed(problem.evaluate(p).slip)
     state = solve_as_thesis(problem, p, speed)
