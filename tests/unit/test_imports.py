@@ -41,7 +41,7 @@ RUNTIME = [
         f"contact/{name}.py"
         for name in ("influence", "half_space", "half_space_contact", "normal", "rolling", "tangential")
     ),
-    *(f"contact/{name}.py" for name in ("slip_dependent_model", "slip_dependent_rolling")),
+    *(f"contact/{name}.py" for name in ("point_contact", "slip_dependent_model", "slip_dependent_rolling")),
     *(
         f"contact/friction/{name}.py"
         for name in (
@@ -56,7 +56,10 @@ RUNTIME = [
             "thesis_iteration",
         )
     ),
-    *(f"contact/creep/{name}.py" for name in ("__init__", "creep_force", "kalker_coefficients", "linear", "fastsim")),
+    *(
+        f"contact/creep/{name}.py"
+        for name in ("__init__", "creep_force", "friction_curve", "kalker_coefficients", "linear", "fastsim")
+    ),
     *(f"excitation/{name}.py" for name in ("line", "sampled_heights", "sinusoid", "sources", "spectrum_line")),
     "excitation/synthesis.py",
     *(

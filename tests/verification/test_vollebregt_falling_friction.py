@@ -153,26 +153,23 @@ def test_statistics_after_the_jump(row):
     if swing < 1e-3 * abs(row["force_mean_N"]):
         assert np.ptp(late) < 1e-3 * abs(late.mean())
     elif row["branch"] == 0.0 and row["memory_distance_m"] == 0.0:
-        assert dominant_period(late) == pytest.approx(row["period_steps"], rel=0.1)
+        # The lines of the cycle and of half of it are nearly equally strong where cycles differ.
+        ratio = row["period_steps"] / dominant_period(late)
+        assert min(abs(ratio - 1.0), abs(ratio - 2.0)) < 0.1  # 0.03
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("normalised", [0.0, 1.0])
-def test_the_cycle_at_a_quarter_of_a_millimetre(normalised):
+def test_the_cycle_at_a_quarter_of_a_millimetre():
     """Pieringer (2011), figure 5.6: seven steps from -7.1 to -12.3 kN, with the law as printed."""
-    states = roll_on(0.25e-3, 48, normalised=normalised, memory=0.0)
-    late = forces(states)[-24:]
+    late = forces(roll_on(0.25e-3, 46, normalised=0.0, memory=0.0))[-14:]
+    cycle = np.sort([-7140.0, -8310.0, -9330.0, -10180.0, -10840.0, -11250.0, -12280.0])
+    np.testing.assert_allclose(np.sort(late[-7:]), cycle, rtol=1e-3)  # 7e-4, the digits printed
+    np.testing.assert_allclose(late[7:], late[:-7], rtol=2e-3)  # 1.5e-3: seven steps, which still settle
     (row,) = [
-        row
-        for row in rows("falling_friction_summary.csv")
-        if row["dx_m"] == 0.25e-3 and row["normalised"] == normalised
+        row for row in rows("falling_friction_summary.csv") if row["dx_m"] == 0.25e-3 and row["normalised"] == 0.0
     ]
-    if not normalised:
-        cycle = np.sort([-7140.0, -8310.0, -9330.0, -10180.0, -10840.0, -11250.0, -12280.0])
-        np.testing.assert_allclose(np.sort(late[-7:]), cycle, rtol=1e-3)  # 7e-4, the digits printed
-        np.testing.assert_allclose(late[7:], late[:-7], rtol=2e-3)  # period of 7 steps
-    assert late.min() == pytest.approx(row["force_min_N"], rel=2e-2)  # 3e-3; normalised 5e-3
-    assert late.max() == pytest.approx(row["force_max_N"], rel=2e-2)  # 2e-3; normalised 8e-3
+    assert late.min() == pytest.approx(row["force_min_N"], rel=2e-3)  # 2e-4
+    assert late.max() == pytest.approx(row["force_max_N"], rel=2e-3)  # 5e-4
 
 
 def test_a_finer_grid_swings_more_without_memory_and_converges_with_it():
@@ -194,7 +191,7 @@ def test_a_finer_grid_swings_more_without_memory_and_converges_with_it():
 @pytest.mark.slow
 def test_memory_at_a_quarter_of_a_millimetre_continues_the_trend():
     forces_at = {
-        dx: forces(roll_on(dx, round(0.04 / dx), normalised=1.0, memory=3e-6))[-1] for dx in (1e-3, 0.5e-3, 0.25e-3)
+        dx: forces(roll_on(dx, round(0.03 / dx), normalised=1.0, memory=3e-6))[-1] for dx in (1e-3, 0.5e-3, 0.25e-3)
     }
     coarse, middle, fine = forces_at.values()
     assert fine == pytest.approx(-16407.0, abs=2.0)  # -16406.8

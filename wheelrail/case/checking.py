@@ -172,11 +172,14 @@ class CaseCheck:
         return f"{where} = {shown_value(value)}: {suggestion}{must_be_one_of(available)}"
 
     def _add_errors(self, error: ValidationError) -> None:
-        for entry in error.errors():
+        entries = error.errors()
+        for entry in entries:
             loc = entry["loc"]
             if not loc:
                 continue  # cross_faults says it
-            if entry["type"] == "too_short" and entry["input"]:
+            if entry["type"] == "too_short" and any(
+                len(other["loc"]) > len(loc) and other["loc"][: len(loc)] == loc for other in entries
+            ):
                 continue  # pydantic doesn't count refused entries, which have their own faults
             depth = 2 if loc[0] == "excitation" else 1
             tag = None

@@ -239,8 +239,8 @@ def allowed_values(field: FieldInfo, *, item: bool = False) -> str:
     str
         For example ``a number > 0 (N/m)``.
     """
-    words = allowed_words(field)
-    if words and not item:
+    words = allowed_words(field, entry=item)
+    if words:
         return words
     choices = _choices(field)
     outer = get_origin(field.annotation)
@@ -250,6 +250,8 @@ def allowed_values(field: FieldInfo, *, item: bool = False) -> str:
     if choices:
         return ("one of: " if len(choices) > 1 else "") + in_words(choices)
     leaves = _leaves(field.annotation) if outer in (Union, types.UnionType) else [field.annotation]
+    if bool in leaves:
+        return "true or false"
     if str in leaves and int in leaves:
         return "text, not empty, or a whole number >= 1"
     if str in leaves:

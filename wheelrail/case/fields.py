@@ -42,10 +42,13 @@ def as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, list) else value
 
 
-def allowed_words(field: Any) -> str | None:
-    """Return what a key may be where its type doesn't say it well: ``allowed`` in its extra."""
+def allowed_words(field: Any, *, entry: bool = False) -> str | None:
+    """Return what a key, or an entry of a list, may be where its type doesn't say it well.
+
+    They are ``allowed`` and ``allowed_entry`` in the extra of the field.
+    """
     extra = field.json_schema_extra
-    return extra.get("allowed") if isinstance(extra, dict) else None
+    return extra.get("allowed_entry" if entry else "allowed") if isinstance(extra, dict) else None
 
 
 def unit_of(field: Any) -> str | None:

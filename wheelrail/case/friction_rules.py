@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
@@ -24,15 +25,14 @@ def friction_faults(friction: Mapping[str, Any], contact: Mapping[str, Any]) -> 
     if law in ("kraft", "polach", "exponential", "rational", "table"):
         if tangential == "fastsim":
             yield f'friction.law = "{law}": only with contact.tangential = "transient" or "friction-curve"'
-        distance = friction.get("memory_distance")
-        if isinstance(distance, int | float) and distance > 0.0 and "memory_speed" not in friction:
+        if _is_positive(friction.get("memory_distance")) and "memory_speed" not in friction:
             yield "friction.memory_speed: missing; friction.memory_distance needs it (m/s); 1e-3 is usual"
         if tangential == "friction-curve":
             for key, default in _OF_TRANSIENT.items():
                 if friction.get(key, default) != default:
                     yield f'friction.{key}: only with contact.tangential = "transient"; leave it out'
     share = friction.get("square_share")
-    if law == "rational" and isinstance(share, int | float) and share > 0.0 and "square_half_speed" not in friction:
+    if law == "rational" and _is_positive(share, highest=1.0) and "square_half_speed" not in friction:
         yield "friction.square_half_speed: missing; friction.square_share needs it (m/s)"
     if law == "table":
         yield from _table_faults(friction)
@@ -48,6 +48,11 @@ def _table_faults(friction: Mapping[str, Any]) -> Iterator[str]:
             break
     if speeds and coefficients and len(speeds) != len(coefficients):
         yield f"friction.coefficients: {len(coefficients)} values for {len(speeds)} speeds; give one for each"
+
+
+def _is_positive(value: object, *, highest: float = math.inf) -> bool:
+    """Tell whether a value is a good one above 0; bad ones have their own faults."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value <= highest
 
 
 def _numbers(values: object) -> list[float]:

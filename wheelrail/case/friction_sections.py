@@ -54,8 +54,8 @@ class _SlipDependent(Section):
     )
     find_solutions: bool = Field(
         default=False,
-        description="transient only: look for all solutions at every step and report how many there are and how far "
-        "their forces differ; takes several times as long",
+        description="transient only: at every step look for the solutions with the least and the most slip and that "
+        "near the step before, and report how many differ and how far their forces do; takes several times as long",
     )
 
 
@@ -118,12 +118,20 @@ class TableFriction(_SlipDependent):
     speeds: Annotated[tuple[Annotated[float, Field(ge=0)], ...], BeforeValidator(as_tuple)] = Field(
         description="Slip velocities, rising from 0 (m/s)",
         min_length=2,
-        json_schema_extra={"unit": "m/s", "allowed": "a list of two or more finite numbers >= 0 (m/s), rising from 0"},
+        json_schema_extra={
+            "unit": "m/s",
+            "allowed": "a list of two or more finite numbers >= 0 (m/s), rising from 0",
+            "allowed_entry": "a finite number >= 0 (m/s)",
+        },
     )
     coefficients: Annotated[tuple[Annotated[float, Field(gt=0)], ...], BeforeValidator(as_tuple)] = Field(
         description="Friction coefficients at these speeds; the first is the static one",
         min_length=2,
-        json_schema_extra={"unit": "1", "allowed": "a list of two or more finite numbers > 0"},
+        json_schema_extra={
+            "unit": "1",
+            "allowed": "a list of two or more finite numbers > 0",
+            "allowed_entry": "a finite number > 0",
+        },
     )
 
 

@@ -50,6 +50,7 @@ def _tidy(node: Any) -> None:
         return
     node.pop("discriminator", None)
     node.pop("allowed", None)
+    node.pop("allowed_entry", None)
     if "default" in node and node["default"] is None:
         del node["default"]
     options = node.get("anyOf")

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from ..errors import ModelFileError
 from .bedding import WinklerBedding
+from .friction.laws import ConstantLaw
 from .friction.settings import SlipFriction
 from .half_space_contact import HalfSpaceContact
+from .point_contact import PointContact
 from .slip_dependent_model import SlipDependentRolling
 from .solution import NormalContact
 from .spring import HertzSpring
@@ -64,6 +66,9 @@ def tangential_model(meta: Mapping[str, Any], normal: NormalContact) -> Tangenti
     if kind == "transient" and isinstance(normal, HalfSpaceContact):
         grid = normal.half_space
         return TransientRolling(grid) if friction is None else SlipDependentRolling(grid, friction)
+    if kind == "friction-curve":
+        law, memory = (ConstantLaw(), None) if friction is None else (friction.law, friction.memory)
+        return PointContact(meta["shear_modulus"], meta["poisson_ratio"], law, memory)
     if kind in ("fastsim", "linear"):
         return CreepForceLaw(kind, meta["shear_modulus"], meta["poisson_ratio"])
     raise ModelFileError(f"the model holds a tangential contact {kind!r} that does not go with its normal contact")

@@ -36,6 +36,11 @@ class SlipDependentRolling:
         """Numbers that it keeps from step to step."""
         return 5 * self.half_space.elements
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a user should know before a run."""
+        return self.friction.remarks
+
     def to_parts(self) -> dict[str, Any]:
         """Return a JSON-able description; the grid is that of the normal contact."""
         return {"kind": self.kind, "friction": self.friction.to_parts()}

@@ -120,7 +120,7 @@ def roll_slip_dependent(
     state = solve_slip_friction(problem, previous[:, contact], guess, solver=friction.solver)
     count, spread = 0, 0.0
     if friction.find_solutions:
-        found = find_solutions(problem, previous[:, contact], speed[contact])
+        found = find_solutions(problem, previous[:, contact], speed[contact], between=False)
         count, spread = len(found), force_spread(problem, found)
     if compliance is not None:
         force = half_space.element_area * state.tractions.sum(axis=1)
@@ -211,6 +211,7 @@ def steady_rolling_slip_dependent(
     fresh = entering(half_space, friction, static)
     place = np.full(half_space.elements + 1, -1)
     place[contact] = np.arange(len(contact))
+    upstream = np.where(contact % half_space.mx == half_space.mx - 1, -1, place[contact + 1])
     problem = SlipFrictionProblem(
         half_space,
         contact,
@@ -222,8 +223,11 @@ def steady_rolling_slip_dependent(
         friction.memory,
         fresh[contact],
         carried=carried_matrix(half_space, contact),
-        upstream=place[contact + 1],
+        upstream=upstream,
     )
+    if len(contact) == 0:
+        nothing = solve_slip_friction(problem, shift[:, contact], np.zeros(0))
+        return _spread(half_space, problem, nothing, on_grid(half_space, contact, nothing, shift=shift), fresh)
     tractions = np.zeros((2, half_space.elements))
     speed, coefficient = np.zeros(half_space.elements), fresh
     alone = replace(friction, find_solutions=False)

@@ -13,12 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .creep.fastsim import fastsim
+from .creep.kalker_coefficients import AXIS_RATIO
 from .creep.linear import linear_creep_force
 from .half_space import HalfSpace
 from .rolling import RollingState, rigid_shift, roll, steady_rolling
 from .solution import NormalSolution
 
-__all__ = ["CreepForceLaw", "Creepages", "Motion", "TangentialModel", "TangentialSolution", "TransientRolling"]
+__all__ = [
+    "CreepForceLaw",
+    "Creepages",
+    "Motion",
+    "TangentialModel",
+    "TangentialSolution",
+    "TransientRolling",
+    "equivalent_ellipse",
+]
 
 
 class Creepages(NamedTuple):
@@ -90,6 +99,16 @@ class TangentialSolution(NamedTuple):
 NOTHING = TangentialSolution(0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, None)
 
 
+def equivalent_ellipse(normal: NormalSolution) -> tuple[float, float]:
+    """Semi-axes in m of an ellipse of the contact's area and proportions, these within the range of Kalker's table.
+
+    A contact of a few elements, just before it opens, can have any proportions.
+    """
+    product = normal.area / math.pi
+    ratio = min(max(normal.length / normal.width, AXIS_RATIO[0]), AXIS_RATIO[-1])
+    return math.sqrt(product * ratio), math.sqrt(product / ratio)
+
+
 class TangentialModel(Protocol):
     """A tangential contact model, without state."""
 
@@ -101,6 +120,11 @@ class TangentialModel(Protocol):
     @property
     def memory(self) -> int:
         """Numbers that it keeps from step to step."""
+        ...
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a user should know before a run."""
         ...
 
     def to_parts(self) -> dict[str, Any]:
@@ -142,6 +166,11 @@ class TransientRolling:
     def memory(self) -> int:
         """Numbers that it keeps from step to step."""
         return 3 * self.half_space.elements
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a user should know before a run."""
+        return ()
 
     def to_parts(self) -> dict[str, Any]:
         """Return a JSON-able description; the grid is that of the normal contact."""
@@ -219,6 +248,11 @@ class CreepForceLaw:
         """Nothing is kept from step to step."""
         return 0
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a user should know before a run."""
+        return ()
+
     def to_parts(self) -> dict[str, Any]:
         """Return a JSON-able description."""
         return {"kind": self.kind, "shear_modulus": self.shear_modulus, "poisson_ratio": self.poisson_ratio}
@@ -245,11 +279,10 @@ class CreepForceLaw:
         if normal.force <= 0.0 or not any(creepages) or (self.kind == "fastsim" and friction == 0.0):
             return NOTHING
         x, y, spin = creepages
-        # An ellipse of the contact's area and proportions.
-        scale = math.sqrt(normal.area / (0.25 * math.pi * normal.length * normal.width))
+        semi_axis_x, semi_axis_y = equivalent_ellipse(normal)
         ellipse: dict[str, Any] = {
-            "semi_axis_x": 0.5 * scale * normal.length,
-            "semi_axis_y": 0.5 * scale * normal.width,
+            "semi_axis_x": semi_axis_x,
+            "semi_axis_y": semi_axis_y,
             "shear_modulus": self.shear_modulus,
             "poisson_ratio": self.poisson_ratio,
         }

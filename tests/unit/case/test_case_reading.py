@@ -213,6 +213,46 @@ def test_to_toml_holds_resolved_presets():
     assert data["wheel"]["mass"] == 341.5
 
 
+MEMORY = {"memory_distance": 3e-6, "memory_speed": 1e-3}
+ALL = {**MEMORY, "solver": "broyden", "branch": "low-slip", "find_solutions": True}
+
+
+@pytest.mark.parametrize("others", [{}, MEMORY, ALL], ids=["alone", "memory", "all keys"])
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"law": "kraft", "coefficient": 0.3, "normalise": False},
+        {"law": "polach", "coefficient": 0.3, "ratio": 0.4, "decay": 0.6},
+        {"law": "exponential", "coefficient": 0.3, "ratio": 0.4, "half_speed": 0.1},
+        {"law": "rational", "coefficient": 0.3, "ratio": 0.4, "half_speed": 0.1},
+        {"law": "rational", "coefficient": 0.3, "ratio": 0, "half_speed": 0.2}
+        | {"square_share": 2 / 7, "square_half_speed": 10},
+        {"law": "table", "speeds": [0, 0.1, 1.0], "coefficients": [0.3, 0.2, 0.15]},
+    ],
+    ids=lambda law: f"{law['law']} {len(law)}",
+)
+def test_friction_law_round_trip(law, others):
+    data = minimal()
+    data["contact"] |= {"normal": "half-space", "tangential": "transient", "dy": 1e-3, "length": 0.019, "width": 0.019}
+    data |= {"creepage": {"x": 0.0, "y": 5e-3, "spin": 0.0}, "friction": {**law, **others}}
+    case = case_from_dict(data)
+    again = parse_case(case.to_toml())
+    assert (again, again.friction) == (case, case.friction)
+    read = tomllib.loads(case.to_toml())["friction"]
+    assert {key: read[key] for key in {**law, **others}} == {**law, **others}
+
+
+def test_defaults_of_a_friction_law():
+    data = minimal()
+    data["friction"] = {"law": "kraft", "coefficient": 0.3, "normalise": True}
+    friction = case_from_dict(data).friction
+    assert (friction.memory_distance, friction.memory_speed) == (0.0, None)
+    assert (friction.solver, friction.branch, friction.find_solutions) == ("newton", "previous", False)
+    data["friction"] = {"law": "rational", "coefficient": 0.3, "ratio": 0.2, "half_speed": 0.1}
+    friction = case_from_dict(data).friction
+    assert (friction.square_share, friction.square_half_speed) == (0.0, None)
+
+
 def test_round_trip_in_another_folder(tmp_path):
     first, second = tmp_path / "first", tmp_path / "second"
     (first / "data").mkdir(parents=True)

@@ -23,6 +23,7 @@ __all__ = [
     "PolachLaw",
     "RationalLaw",
     "TableLaw",
+    "falls",
     "law_from_parts",
     "steepest_fall",
 ]
@@ -230,11 +231,19 @@ def _tuple(value: Any) -> Any:
     return tuple(value) if isinstance(value, Sequence) and not isinstance(value, str) else value
 
 
+def falls(law: FrictionLaw) -> bool:
+    """Tell whether friction falls with the slip velocity anywhere between 0 and 100 m/s."""
+    return steepest_fall(law, highest_speed=100.0) > 0.0
+
+
 def steepest_fall(law: FrictionLaw, *, highest_speed: float) -> float:
     """Return the largest -s d(mu/mu_s)/ds for slip velocities up to ``highest_speed`` in m/s.
 
     Sliding with a friction memory d_c on a contact of tangential stiffness k_t under the normal force N is stable for
     small disturbances if k_t > mu_s N (-s d(mu/mu_s)/ds) / d_c (Rice and Ruina 1983, J. Appl. Mech. 50, 343-349).
     """
-    speed = np.concatenate([[0.0], np.geomspace(1e-4 * highest_speed, highest_speed, 400)])
+    speed = np.geomspace(1e-9 * highest_speed, highest_speed, 4000)
+    if isinstance(law, TableLaw):  # steepest at the end of a line
+        ends = np.array([end for end in law.speeds[1:] if end <= highest_speed])
+        speed = np.concatenate([speed, np.nextafter(ends, 0.0)])
     return max(float(np.max(-speed * law.evaluate(speed)[1])), 0.0)

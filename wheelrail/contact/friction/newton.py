@@ -106,7 +106,7 @@ def _system(problem: SlipFrictionProblem, p: NDArray, at: Evaluation) -> tuple[N
         return jacobian, rhs
     nx, ny = at.trial[:, slide] / at.size[slide]
     tx, ty = -ny, nx
-    share = (at.bound / at.size)[slide]
+    share = at.bound[slide] / at.size[slide]
     across = (tx * share)[:, None] * jacobian[slide] + (ty * share)[:, None] * jacobian[k + slide]
     across[np.arange(len(slide)), slide] += (1.0 - share) * tx
     across[np.arange(len(slide)), k + slide] += (1.0 - share) * ty

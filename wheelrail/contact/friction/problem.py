@@ -199,8 +199,10 @@ class SlipFrictionProblem:
         size = np.hypot(trial[0], trial[1])
         coefficient, slope = self.coefficient(self.speed(slip))
         bound = coefficient * self.pressure
-        difference = tractions - trial * (bound / np.maximum(size, bound))
-        residual = float(np.abs(difference).max()) / float(bound.max())
+        difference = tractions - trial * (bound / np.maximum(np.maximum(size, bound), np.finfo(float).tiny))
+        # Over the bounds at rest where friction has vanished altogether.
+        scale = float(bound.max()) or self.static * float(self.pressure.max())
+        residual = float(np.abs(difference).max()) / scale
         return Evaluation(slip, trial, size, bound, coefficient, slope, residual)
 
     def state(self, tractions: NDArray, iterations: int, method: str) -> SlipFrictionState:

@@ -8,14 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from .laws import FrictionLaw, law_from_parts
+from .laws import FrictionLaw, falls, law_from_parts
 from .memory import FrictionMemory
 from .solve import SOLVERS
 
-__all__ = ["BRANCHES", "SlipFriction"]
+__all__ = ["BRANCHES", "WITHOUT_MEMORY", "SlipFriction"]
 
 BRANCHES = ("previous", "low-slip", "high-slip")
 """Where the search for a step's solution starts: at the slip of the step before, at full stick, at full slip."""
+
+WITHOUT_MEMORY = (
+    "friction falls with the slip velocity and has no memory: the contact may swing from step to step, with results "
+    'that depend on the grid; friction.memory_distance cures that ("wheelrail explain" says from which value on)'
+)
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,11 @@ class SlipFriction:
     def at_rest(self) -> float:
         """Ratio mu / mu_s without slip, with which particles enter the contact."""
         return float(self.law.evaluate(np.zeros(1))[0][0])
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a user should know before a run."""
+        return () if self.memory is not None or not falls(self.law) else (WITHOUT_MEMORY,)
 
     def to_parts(self) -> dict[str, Any]:
         """Return a JSON-able description."""

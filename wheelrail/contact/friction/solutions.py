@@ -47,7 +47,9 @@ class Solution:
         return is_repelling(self.problem, self.state.tractions)
 
 
-def find_solutions(problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray) -> tuple[Solution, ...]:
+def find_solutions(
+    problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray, *, between: bool = True
+) -> tuple[Solution, ...]:
     """Look for all solutions.
 
     Parameters
@@ -57,11 +59,19 @@ def find_solutions(problem: SlipFrictionProblem, tractions: NDArray, speed: NDAr
         Of the step before, Pa.
     speed : ndarray, shape (k,)
         Slip velocities of the step before, m/s.
+    between : bool
+        Also search for a solution between two others, which takes long. Without, it is found only if it is near the
+        tractions of the step before.
 
     Returns
     -------
     tuple of Solution
-        In order of slip; of those looked for none is left out that was found.
+        In order of slip; none if no method converged.
+
+    Notes
+    -----
+    A solution between two others is found for certain only if iterating between contact and law runs away from it in
+    one direction alone; its example in the publication has two, and is found from the tractions of the step before.
     """
     found: list[SlipFrictionState] = []
     for guess in (np.zeros_like(speed), problem.speed(problem.shift), speed):
@@ -69,15 +79,17 @@ def find_solutions(problem: SlipFrictionProblem, tractions: NDArray, speed: NDAr
     if len(problem.contact):
         _try_newton(problem, tractions, found)
     found.sort(key=_slip)
-    if len(found) == 2:
+    if between and len(found) == 2:
         _try_newton(problem, _watershed(problem, *found), found)
         found.sort(key=_slip)
-    names = ["only"] if len(found) == 1 else ["low-slip", *["middle"] * (len(found) - 2), "high-slip"]
+    names = ["low-slip", *["middle"] * (len(found) - 2), "high-slip"] if len(found) > 1 else ["only"] * len(found)
     return tuple(Solution(name, problem, state) for name, state in zip(names, found, strict=True))
 
 
 def force_spread(problem: SlipFrictionProblem, solutions: tuple[Solution, ...]) -> float:
     """Return the largest difference between the tangential forces of solutions, N."""
+    if not solutions:
+        return 0.0
     forces = [problem.half_space.element_area * each.state.tractions.sum(axis=1) for each in solutions]
     return max(float(np.hypot(*(one - other))) for one in forces for other in forces)
 
@@ -120,7 +132,7 @@ def _try_newton(problem: SlipFrictionProblem, tractions: NDArray, found: list[Sl
 
 
 def _add(found: list[SlipFrictionState], state: SlipFrictionState) -> None:
-    if found and not state.residual <= TOLERANCE:
+    if not state.residual <= TOLERANCE:
         return
     scale = max((float(np.abs(each.tractions).max(initial=0.0)) for each in [*found, state]), default=0.0)
     for each in found:

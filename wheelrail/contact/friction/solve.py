@@ -48,7 +48,7 @@ def solve_slip_friction(
     """
     k = len(problem.contact)
     coefficient = problem.coefficient(speed)[0]
-    if k == 0 or not np.any(coefficient > 0.0):  # nothing to hold: everything slides freely
+    if k == 0 or problem.static == 0.0:  # nothing to hold: everything slides freely
         return SlipFrictionState(
             np.zeros((2, k)), problem.shift.copy(), np.ones(k, dtype=bool), coefficient, 0, 0.0, "none"
         )
