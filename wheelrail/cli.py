@@ -104,9 +104,7 @@ def _parser() -> argparse.ArgumentParser:
     explain.add_argument("case", nargs="?", metavar="CASE", help=case_help)
     explain.set_defaults(command=_explain)
 
-    stability = commands.add_parser(
-        "stability", help="say which wheel modes grow in steady sliding at constant friction: what can squeal"
-    )
+    stability = commands.add_parser("stability", help="say which wheel modes grow in steady sliding: what can squeal")
     stability.add_argument("case", metavar="CASE", help="case file with a flexible wheel, friction and creepage")
     stability.set_defaults(command=_stability)
 
@@ -281,8 +279,18 @@ def _stability(options: argparse.Namespace) -> int:
         print(line)
     count = len(result.unstable)
     names = ", ".join(f"({mode.name})" for mode in result.unstable) or "-"
-    print(f"\nwheel modes that can squeal at constant friction: {count}: {names}")
-    others = result.growing - count
+    loop = result.loop
+    print(
+        f"\nsliding at {loop.sliding_speed:.3g} m/s: friction {loop.friction_coefficient:.3g}, slope "
+        f"{loop.friction_slope:.3g} s/m, memory {1e6 * loop.memory_distance:g} um"
+    )
+    print(f"wheel modes that can squeal: {count}: {names}")
+    if loop.contact_unstable:
+        print(
+            "the contact by itself is unstable: friction falls faster than its memory lets it; "
+            f"friction.memory_distance above {1e6 * loop.critical_memory_distance:.2g} um cures that"
+        )
+    others = result.growing - count - loop.contact_unstable
     if others > 0:
         print(f"more growing oscillations, of wheel mass and rail (Nyquist's criterion): {others}")
     elif others < 0:

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from ..case import Case
 from ..contact.creep.linear import linear_creep_force
 from ..contact.creep.vermeulen_johnson import saturated_fraction
+from ..contact.point_contact import tangential_compliance
 from ..errors import CaseError
 from ..interaction.build import hertz_of
-from ..interaction.friction import static_friction_of
+from ..interaction.friction import law_of, slip_friction_of, static_friction_of
 from ..interaction.tracks import track_of
 from ..interaction.wheels import wheel_of
 from ..wheel.modes import FlexibleWheel
@@ -37,12 +38,15 @@ class CaseStability:
         contact as sliding fully; below about 0.99 it does not hold.
     growing : int
         Growing oscillations of the whole system by Nyquist's criterion; more than the growing modes of the wheel if
-        wheel mass and rail, or the rail alone, have one of their own.
+        wheel mass and rail, the rail alone or the contact alone have one of their own.
+    loop : SlidingLoop
+        What was judged.
     """
 
     modes: tuple[WheelModeStability, ...]
     saturation: float
     growing: int
+    loop: SlidingLoop
 
     @property
     def unstable(self) -> tuple[WheelModeStability, ...]:
@@ -97,10 +101,28 @@ def sliding_loop(case: Case, *, x: float | None = None) -> SlidingLoop:
             return np.zeros((len(frequency), 3, 3))
         return track.receptance(frequency, place)
 
-    hertz = hertz_of(case)
-    # F = C d^1.5 about the preload.
+    hertz, contact = hertz_of(case), case.contact
+    speed = case.simulation.speed * float(np.hypot(creepage.x, creepage.y))
+    ratio, slope = law_of(case).evaluate(np.array([speed]))
+    static, settings = static_friction_of(case), slip_friction_of(case)
+    compliance = tangential_compliance(
+        semi_axis_x=hertz.semi_axis_x,
+        semi_axis_y=hertz.semi_axis_y,
+        shear_modulus=contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio)),
+        poisson_ratio=contact.poisson_ratio,
+    )
+    along = np.array([creepage.x, creepage.y]) / np.hypot(creepage.x, creepage.y)
     return SlidingLoop(
-        wheel, rail, 1.5 * hertz.load / hertz.approach, static_friction_of(case), (creepage.x, creepage.y)
+        wheel,
+        rail,
+        1.5 * hertz.load / hertz.approach,  # F = C d^1.5 about the preload
+        static * float(ratio[0]),
+        (creepage.x, creepage.y),
+        load=hertz.load,
+        sliding_speed=speed,
+        friction_slope=static * float(slope[0]),
+        memory_distance=0.0 if settings is None or settings.memory is None else settings.memory.distance,
+        tangential_compliance=float(np.array(compliance) @ along**2),
     )
 
 
@@ -118,10 +140,11 @@ def case_stability(case: Case, *, x: float | None = None) -> CaseStability:
     """
     loop = sliding_loop(case, x=x)
     highest = HIGHEST * max(mode.frequency for mode in loop.wheel.modes)
-    return CaseStability(mode_stability(loop), _saturation(case), unstable_count(loop, highest_frequency=highest))
+    growing = unstable_count(loop, highest_frequency=highest)
+    return CaseStability(mode_stability(loop), _saturation(case, loop), growing, loop)
 
 
-def _saturation(case: Case) -> float:
+def _saturation(case: Case, loop: SlidingLoop) -> float:
     """Tangential force of steady rolling over the friction limit."""
     hertz, contact, creepage = hertz_of(case), case.contact, case.creepage
     assert creepage is not None
@@ -134,7 +157,7 @@ def _saturation(case: Case) -> float:
         shear_modulus=contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio)),
         poisson_ratio=contact.poisson_ratio,
     )
-    limit = static_friction_of(case) * hertz.load
+    limit = loop.friction_coefficient * hertz.load
     if limit == 0.0:
         return 1.0
     return float(saturated_fraction(float(np.hypot(linear.force_x, linear.force_y)) / limit))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from wheelrail.case import Case
 from wheelrail.contact.hertz import HertzContact
-from wheelrail.interaction.friction import static_friction_of
 
 __all__ = ["explain_contact", "explain_what_has_no_effect"]
 
@@ -38,8 +37,7 @@ def explain_contact(case: Case, hertz: HertzContact, warnings: list[str]) -> lis
             f"{contact.dy * 1e3:g} mm; about {elements:.0f} in contact at the preload"
         )
     if contact.tangential != "none":
-        friction = "" if case.friction is None else f", friction {static_friction_of(case):g}"
-        lines.append(f"tangential                {contact.tangential}{friction}")
+        lines.append(f"tangential                {contact.tangential}")
     moves = case.wheel.model == "flexible" or case.track.model == "waveguide"
     if contact.tangential == "transient" and case.simulation.first_sample == "zero" and moves:
         warnings.append(

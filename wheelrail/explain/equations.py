@@ -63,11 +63,32 @@ def _tangential_equations(case: Case) -> list[str]:
             return [_equation("F1 = -G a b C11 xi, F2, M3 alike", "Kalker's linear theory, no friction limit")]
         case "fastsim":
             return [_equation("u = L p along strips, |p| <= mu p3", "FASTSIM, Kalker 1982")]
+        case "friction-curve":
+            return [
+                _equation("F_t = -mu(s) F f(r) w / |w|, w = (c_x e_x, c_y e_y + c_s phi)", "point contact"),
+                "    with f of Vermeulen and Johnson 1964, r = |w| / (mu F), s = v |e|, Kalker's slopes c",
+                _equation("e = xi + [D + C (F_t - F_t(a - 1))] / dx", "contact spring C (Mindlin 1949)"),
+                *_friction_equations(case),
+            ]
     return [
         _equation("S = A p + W - u'(a - 1), W = (xi - y phi, eta + x phi) dx", "Pieringer 2011, eqs. 3.43 to 3.54"),
         "    with S = 0 where |p| < mu p3, else p against S; u' carries the tractions of the step before",
         "    creepages xi, eta, phi: rail relative to wheel over v, so positive ones give negative forces on the rail",
+        *_friction_equations(case),
     ]
+
+
+def _friction_equations(case: Case) -> list[str]:
+    friction = case.friction
+    if friction is None or friction.law == "constant":
+        return []
+    source = "Pieringer 2011, eqs. 3.56 to 3.58" if friction.law == "kraft" else "Pieringer 2011, section 3.6.2"
+    lines = [_equation("mu = mu_law(s), s = |S| / dt, for each element", source)]
+    if case.contact.tangential == "friction-curve":
+        lines = [_equation("mu = mu_law(s)", f"friction.law = {friction.law}")]
+    if friction.memory_distance > 0.0:
+        lines.append(_equation("d mu / dt = -max(s, s0) / d_c (mu - mu_law(s))", "of the particle; Vollebregt 2014"))
+    return lines
 
 
 def _moves_sideways(case: Case) -> bool:
@@ -112,6 +133,15 @@ def explain_sources(case: Case, track: TrackModel | None) -> list[str]:
         lines.append(
             "Kalker 1990, Three-dimensional elastic bodies in rolling contact (NORM, TANG, creepage coefficients)"
         )
+    if case.friction is not None and case.friction.law != "constant" and case.contact.tangential != "none":
+        lines.append(
+            "Vollebregt and Schuttelaars 2012, J. Sound Vib. 331 (several solutions with slip-velocity dependent "
+            "friction)"
+        )
+        if case.friction.memory_distance > 0.0:
+            lines.append(
+                "Vollebregt 2014, Wear 314 (friction memory); Rice and Ruina 1983, J. Appl. Mech. 50 (stability)"
+            )
     if track is not None:
         lines.append(
             "Nordborg 2002, Wheel/rail noise generation due to nonlinear effects and parametric excitation, "

@@ -11,6 +11,7 @@ from wheelrail.explain.discretisation import explain_cost, explain_grid
 from wheelrail.explain.equations import explain_equations, explain_sources
 from wheelrail.explain.excitation import explain_excitation
 from wheelrail.explain.frequencies import explain_frequencies
+from wheelrail.explain.friction import explain_friction
 from wheelrail.explain.structures import explain_track, explain_wheel
 from wheelrail.interaction.build import hertz_of, track_of, wheel_of
 from wheelrail.interaction.tracks import find_greens_of
@@ -52,6 +53,7 @@ def explain(case: Case) -> str:
         ("Wheel", explain_wheel(case, wheel, warnings)),
         ("Track", explain_track(case, track, greens, warnings)),
         ("Contact", explain_contact(case, hertz, warnings)),
+        ("Friction", explain_friction(case, hertz, warnings)),
         ("Frequencies", explain_frequencies(case, moving, track, hertz)),
         ("Excitation", explain_excitation(case, hertz, warnings)),
         ("Cost", explain_cost(case, hertz, moving, track, greens)),

@@ -180,6 +180,8 @@ class CoSimulation:
         self._largest = self._smallest = float(state.block[FORCE])
         self._worst = [float(state.block[place]) for place in LARGEST.values()]
         self._check_residual(float(state.block[RESIDUAL]))
+        if self.model.tangential is not None:
+            self.warnings += self.model.tangential.remarks
 
     def _current(self) -> State:
         if self._stale or self._state is None:

@@ -173,6 +173,9 @@ class Simulation:
         self.statistics = Statistics() if statistics is None else statistics
         self._at_start = state is None
         self.state = start(model, self.inputs) if state is None else state
+        if self._at_start and model.tangential is not None:
+            for remark in model.tangential.remarks:
+                _log.warning("%s", remark)
         self._rows = np.empty((block, SCALARS))
 
     def __iter__(self) -> Iterator[dict[str, NDArray]]:
