@@ -170,6 +170,7 @@ def error_line(error: Mapping[str, Any], loc: tuple[str | int, ...], tag: str | 
     field = model.model_fields[key]
     if kind == "missing":
         give = f"give one of: {in_words(_choices(field))};" if _choices(field) else f"give it{_unit(field)}"
+        give = "give true or false" if field.annotation is bool else give
         return f"{where}: missing; {give}{preset_hint(section, key, tag)}".rstrip(";")
     bounds = _bounds(field) if kind in RANGE_ERRORS and not _is_even(field) else ""
     allowed = bounds + _unit(field) if bounds else allowed_values(field, item=isinstance(loc[-1], int))

@@ -27,6 +27,8 @@ def friction_faults(friction: Mapping[str, Any], contact: Mapping[str, Any]) -> 
             yield f'friction.law = "{law}": only with contact.tangential = "transient" or "friction-curve"'
         if _is_positive(friction.get("memory_distance")) and "memory_speed" not in friction:
             yield "friction.memory_speed: missing; friction.memory_distance needs it (m/s); 1e-3 is usual"
+        if "memory_speed" in friction and friction.get("memory_distance", 0.0) == 0.0:
+            yield "friction.memory_distance: missing or 0, so that there is no memory; memory_speed needs it (m)"
         if tangential == "friction-curve":
             for key, default in _OF_TRANSIENT.items():
                 if friction.get(key, default) != default:

@@ -19,15 +19,6 @@ __all__ = [
 ]
 
 
-class ConstantFriction(Section):
-    """``[friction]`` after Coulomb; without effect while there is no tangential contact model."""
-
-    law: Literal["constant"] = Field(description="Friction law: constant coefficient")
-    coefficient: float = quantity("Friction coefficient", "1", ge=0)
-    memory_distance: float = quantity("Friction memory; no effect under a constant law", "m", 0.0, ge=0)
-    memory_speed: float | None = quantity("Friction memory; no effect under a constant law", "m/s", None, gt=0)
-
-
 class _SlipDependent(Section):
     memory_distance: float = quantity(
         "Sliding distance over which the friction coefficient of a particle follows the law; 0: none, the coefficient "
@@ -57,6 +48,16 @@ class _SlipDependent(Section):
         description="transient only: at every step look for the solutions with the least and the most slip and that "
         "near the step before, and report how many differ and how far their forces do; takes several times as long",
     )
+
+
+class ConstantFriction(_SlipDependent):
+    """``[friction]`` after Coulomb; without effect while there is no tangential contact model.
+
+    It takes the keys of the other laws, without effect, so that laws can be swapped.
+    """
+
+    law: Literal["constant"] = Field(description="Friction law: constant coefficient")
+    coefficient: float = quantity("Friction coefficient", "1", ge=0)
 
 
 class KraftFriction(_SlipDependent):

@@ -407,9 +407,9 @@ def test_keys_of_another_friction_law_name_those_of_this_one():
             common - {"coefficient"} | {"speeds", "coefficients"},
         ),
         (
-            {"law": "constant", "coefficient": 0.3, "solver": "newton"},
-            'friction.solver: not used with law = "constant"; ',
-            {"law", "coefficient", "memory_distance", "memory_speed"},
+            {"law": "constant", "coefficient": 0.3, "normalise": True},
+            'friction.normalise: not used with law = "constant"; ',
+            common,
         ),
         (
             {**KRAFT, "normalize": True},

@@ -70,8 +70,9 @@ def find_solutions(
 
     Notes
     -----
-    A solution between two others is found for certain only if iterating between contact and law runs away from it in
-    one direction alone; its example in the publication has two, and is found from the tractions of the step before.
+    There may be more. Solutions come with alternating signs of det(1 - T'), T' the derivative of the iteration between
+    contact and law, that add up to 1; so an even number means that at least one was missed. The example of the
+    publication has five: two more lie next to the middle one, which itself repels in two directions.
     """
     found: list[SlipFrictionState] = []
     for guess in (np.zeros_like(speed), problem.speed(problem.shift), speed):
@@ -80,7 +81,8 @@ def find_solutions(
         _try_newton(problem, tractions, found)
     found.sort(key=_slip)
     if between and len(found) == 2:
-        _try_newton(problem, _watershed(problem, *found), found)
+        for tractions in _along_the_watershed(problem, *found):
+            _try_newton(problem, tractions, found)
         found.sort(key=_slip)
     names = ["low-slip", *["middle"] * (len(found) - 2), "high-slip"] if len(found) > 1 else ["only"] * len(found)
     return tuple(Solution(name, problem, state) for name, state in zip(names, found, strict=True))
@@ -94,35 +96,34 @@ def force_spread(problem: SlipFrictionProblem, solutions: tuple[Solution, ...]) 
     return max(float(np.hypot(*(one - other))) for one in forces for other in forces)
 
 
-def _watershed(problem: SlipFrictionProblem, low: SlipFrictionState, high: SlipFrictionState) -> NDArray:
-    """Return tractions near the solution between two others, shape (2, k).
+def _along_the_watershed(
+    problem: SlipFrictionProblem, low: SlipFrictionState, high: SlipFrictionState
+) -> list[NDArray]:
+    """Return tractions that pass near the solutions between two others, each of shape (2, k).
 
-    Iterations that start on either side of it go to different solutions; one that starts close to the border passes
-    close to the solution that repels.
+    Iterations that start on either side of them go to different solutions; one that starts close to the border passes
+    close to the solutions that repel.
     """
     slow, fast = problem.speed(low.slip), problem.speed(high.slip)
     from_low, from_high = float(slow.sum()), float(fast.sum())
-    below, above, nearest = 0.0, 1.0, low.tractions
+    below, above, way = 0.0, 1.0, []
     for _ in range(_HALVINGS):
         place = share = 0.5 * (below + above)
-        speed, tractions, smallest, passing = slow + share * (fast - slow), low.tractions, np.inf, True
-        candidate = tractions
+        speed, tractions, passed = slow + share * (fast - slow), low.tractions, []
         for _ in range(_ITERATIONS):
             tractions = problem.solve_for(problem.coefficient(speed)[0], tractions).tractions
-            at = problem.evaluate(tractions)
-            speed = problem.speed(at.slip)
+            speed = problem.speed(problem.evaluate(tractions).slip)
             place = (float(speed.sum()) - from_low) / (from_high - from_low)
-            if at.residual < smallest:
-                smallest, passing, candidate = at.residual, True, tractions
-            elif passing:  # it comes no closer: what repels is behind it
-                nearest, passing, smallest = candidate, False, 0.0
+            passed.append(tractions)
             if not _DECIDED < place < 1.0 - _DECIDED:
                 break
+        if len(passed) > 1:
+            way = passed
         if place < 0.5:
             below = share
         else:
             above = share
-    return nearest
+    return way
 
 
 def _try_newton(problem: SlipFrictionProblem, tractions: NDArray, found: list[SlipFrictionState]) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..tangential import accelerated_gradient
 from .newton import is_reversed, newton
-from .problem import SlipFrictionProblem, SlipFrictionState
+from .problem import TOLERANCE, SlipFrictionProblem, SlipFrictionState
 from .thesis_iteration import fixed_point, solve_as_thesis
 
 __all__ = ["SOLVERS", "solve_slip_friction"]
@@ -44,7 +44,7 @@ def solve_slip_friction(
     Returns
     -------
     SlipFrictionState
-        With a residual above `wheelrail.contact.friction.problem.TOLERANCE` if no method converged within its bounds.
+        With a residual above `TOLERANCE` if no method converged within its bounds.
     """
     k = len(problem.contact)
     coefficient = problem.coefficient(speed)[0]
@@ -67,7 +67,12 @@ def solve_slip_friction(
             return problem.state(solution, count, "newton")
         speed = problem.speed(problem.evaluate(p).slip)
     state = solve_as_thesis(problem, p, speed)
-    return state._replace(iterations=count + state.iterations)
+    count += state.iterations
+    if state.residual > TOLERANCE:  # full stick leads to a solution more surely than anything else
+        other = fixed_point(problem, p, np.zeros(k))
+        count += other.iterations
+        state = min(state, other, key=lambda each: each.residual)
+    return state._replace(iterations=count)
 
 
 def _improve(

@@ -2,8 +2,9 @@
 
     g(mu) = mu - f(s(mu)) = 0,     s(mu) from the contact for given coefficients (eq. 3.56)
 
-Broyden's method first; if it fails, the direct iteration mu <- f(s(mu)), relaxed when it swings. The guess are the
-coefficients that the slip of the previous step gives.
+Broyden's method first; if it fails, the direct iteration mu <- f(s(mu)), with shorter steps where it swings and longer
+ones where it creeps (as it does where two solutions have just ceased to exist). The guess are the coefficients that the
+slip of the previous step gives.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ __all__ = ["broyden", "fixed_point", "solve_as_thesis"]
 
 MAXIMUM_BROYDEN = 40
 MAXIMUM_FIXED_POINT = 400
-_PATIENCE = 12  # direct iterations without progress, after which they are relaxed
-_RELAX, _SMALLEST = 0.7, 0.05
+_PATIENCE = 12  # direct iterations that hardly bring progress, after which their steps grow
+_SHORTER, _LONGER, _SMALLEST, _LARGEST = 0.7, 1.5, 0.05, 20.0  # of the relaxation factor
 
 
 def solve_as_thesis(problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray) -> SlipFrictionState:
@@ -88,19 +89,21 @@ def fixed_point(
     """
     mu = problem.coefficient(speed)[0]
     relaxation, since, smallest, best = 1.0, 0, np.inf, tractions
-    count = 0
+    last, count = np.zeros_like(mu), 0
     while count < maximum:
         tractions = problem.solve_for(mu, tractions).tractions
         count += 1
         at = problem.evaluate(tractions)
+        since = 0 if at.residual < 0.9 * smallest else since + 1
         if at.residual < smallest:
-            since = 0 if at.residual < 0.9 * smallest else since + 1
             best, smallest = tractions, at.residual
-        else:
-            since += 1
         if at.residual <= TOLERANCE:
             break
-        if since >= _PATIENCE and relaxation > _SMALLEST:
-            relaxation, since = relaxation * _RELAX, 0
-        mu = mu + relaxation * (at.coefficient - mu)
+        change = at.coefficient - mu
+        if float(change @ last) < 0.0:
+            relaxation = max(_SHORTER * relaxation, _SMALLEST)
+        elif since >= _PATIENCE:
+            relaxation = min(_LONGER * relaxation, _LARGEST)
+        mu = np.maximum(mu + relaxation * change, 0.5 * np.minimum(mu, at.coefficient))
+        last = change
     return problem.state(best, count, "fixed-point")
