@@ -17,9 +17,13 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
+from wheelrail.contact.friction.laws import KraftLaw
+from wheelrail.contact.friction.memory import FrictionMemory
+from wheelrail.contact.friction.settings import SlipFriction
 from wheelrail.contact.half_space import HalfSpace
 from wheelrail.contact.normal import NormalProblem, solve_normal
 from wheelrail.contact.rolling import rigid_shift, roll
+from wheelrail.contact.slip_dependent_rolling import entering, roll_slip_dependent
 from wheelrail.contact.tangential import TangentialProblem, influence_matrix
 
 pytestmark = pytest.mark.benchmark
@@ -67,6 +71,44 @@ class Run:
         np.linalg.solve(influence_matrix(problem), np.ones(2 * len(contact)))
 
 
+class FallingRun(Run):
+    """The same with a friction law, or steady load and creepage; zero tractions at the start."""
+
+    def __init__(self, elements_across: int, dx: float, friction: SlipFriction | None, steady: bool) -> None:
+        super().__init__(elements_across, dx)
+        self.friction, self.steady = friction, steady
+        self.speed = np.zeros(self.grid.elements)
+        self.coefficient = np.zeros(self.grid.elements)
+        if friction is not None:
+            self.coefficient = entering(self.grid, friction, 0.3)
+
+    def step(self) -> None:
+        k, self.number = self.number, self.number + 1
+        load = 65e3 if self.steady else 65e3 * (1.0 + 0.1 * np.sin(k / 7.0) + 0.02 * self.rng.normal())
+        normal = solve_normal(NormalProblem(self.grid, self.gap, 0.0, 1.0, load), self.contact)
+        self.contact = normal.contact
+        creepages = (0.0, 5e-3, 0.0) if self.steady else (5e-4 * np.cos(k / 5.0), 5e-3 * (1.0 + np.sin(k / 11.0)), 0.1)
+        x, y, spin = creepages
+        shift = rigid_shift(self.grid, creepage_x=x, creepage_y=y, creepage_spin=spin, distance=self.grid.dx)
+        if self.friction is None:
+            rolling = roll(self.grid, normal, friction=0.3, shift=shift, previous=self.tractions)
+        else:
+            state = roll_slip_dependent(
+                self.grid,
+                normal,
+                friction=self.friction,
+                static=0.3,
+                dt=self.grid.dx / (50.0 / 3.6),
+                shift=shift,
+                previous=self.tractions,
+                speed=self.speed,
+                coefficient=self.coefficient,
+            )
+            rolling, self.speed, self.coefficient = state.rolling, state.speed, state.coefficient
+        self.tractions = rolling.tractions
+        self.worst = max(self.worst, rolling.residual)
+
+
 @pytest.mark.parametrize(("across", "dx", "steps"), [(19, 1e-3, 400), (37, 0.5e-3, 100)])
 def test_contact_step(across: int, dx: float, steps: int) -> None:
     with threadpool_limits(1):
@@ -94,3 +136,31 @@ def test_contact_step(across: int, dx: float, steps: int) -> None:
     total = sum(entry[2] for entry in stats.values())
     longest = sorted(stats.items(), key=lambda item: -item[1][2])[:5]
     print("  where: " + ", ".join(f"{where[2].strip('<>')} {100 * entry[2] / total:.0f} %" for where, entry in longest))
+
+
+@pytest.mark.parametrize(("across", "dx", "steps"), [(19, 1e-3, 200), (37, 0.5e-3, 60)])
+def test_falling_friction_step(across: int, dx: float, steps: int) -> None:
+    """The same run, and thesis section 5.3.2, with constant and with slip-velocity dependent friction."""
+    runs = {
+        "constant": None,
+        "Kraft, memory 3 um": SlipFriction(KraftLaw(True), FrictionMemory(3e-6, 1e-3)),
+        "Kraft, no memory": SlipFriction(KraftLaw(True)),
+        "Kraft, no memory, the thesis' way": SlipFriction(KraftLaw(True), solver="broyden"),
+    }
+    with threadpool_limits(1):
+        for case, steady in (("changing load and creepages", False), ("65 kN, lateral creepage 0.5 %", True)):
+            print(f"\ndx {1e3 * dx:g} mm, {case}")
+            contenders = {name: FallingRun(across, dx, friction, steady) for name, friction in runs.items()}
+            times: dict[str, list[float]] = {name: [] for name in runs}
+            for number in range(steps):
+                for name, run in contenders.items():  # in turn, so that all see the same machine
+                    begin = perf_counter()
+                    run.step()
+                    if number >= steps // 4:
+                        times[name].append(perf_counter() - begin)
+            base = median(times["constant"])
+            for name, run in contenders.items():
+                print(
+                    f"  {name:34s} {1e3 * median(times[name]):7.2f} ms, {median(times[name]) / base:5.2f} x constant; "
+                    f"mean {np.mean(times[name]) / np.mean(times['constant']):5.2f} x; largest residual {run.worst:.0e}"
+                )

@@ -10,13 +10,15 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from .receptances import mark_frequencies
 from .style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, legend, new_figure
 
-__all__ = ["CentreLine", "centre_lines_figure", "force_by_grid_figure", "friction_laws_figure"]
+__all__ = ["CentreLine", "centre_lines_figure", "force_by_grid_figure", "friction_laws_figure", "spectra_figure"]
 
 _COLOURS = (BLUE, ORANGE, GREEN, PURPLE, INK)
 _MARKERS = ("o", "s", "^", "d", "v")
 _SMALL = 8.0  # pt
+_RANGE = 80.0  # dB below the highest level
 
 
 class CentreLine(NamedTuple):
@@ -85,6 +87,41 @@ def force_by_grid_figure(histories: Mapping[str, tuple[NDArray, NDArray]], *, ti
     low, high = axis.get_ylim()
     axis.set_ylim(low, high + 0.2 * (high - low))
     legend(axis, ncols=len(histories), loc="upper center")
+    return figure
+
+
+def spectra_figure(
+    spectra: Mapping[str, tuple[NDArray, NDArray]],
+    *,
+    modes: Mapping[str, float] | None = None,
+    highest: float = 7e3,
+    title: str,
+) -> Figure:
+    """Draw spectra of the lateral force over each other (Pieringer 2011, figs. 5.9 and 5.10).
+
+    Parameters
+    ----------
+    spectra : mapping
+        Frequencies (Hz) and amplitudes (N) by name.
+    modes : mapping of str to float, optional
+        Frequencies of the wheel's modes in Hz, by name.
+    highest : float
+        Hz.
+    title : str
+    """
+    figure, (axis,) = new_figure(title, rows=1, height=3.8)
+    top = -np.inf
+    for (name, (frequency, amplitude)), colour in zip(spectra.items(), _COLOURS, strict=False):
+        level = 20.0 * np.log10(np.maximum(amplitude / math.sqrt(2.0), 1e-300))
+        inside = (frequency > 0.0) & (frequency <= highest)
+        axis.plot(frequency[inside] / 1e3, level[inside], color=colour, linewidth=0.9, label=name)
+        top = max(top, float(level[inside].max()))
+    axis.set_xlim(0.0, highest / 1e3)
+    axis.set_ylim(top - _RANGE, top + 12.0)
+    axis.set_xlabel("Frequency / kHz")
+    axis.set_ylabel("Level of $F_y$ / dB re 1 N")
+    mark_frequencies(axis, {f"({name})": f / 1e3 for name, f in (modes or {}).items()})
+    legend(axis, ncols=len(spectra), loc="upper center")
     return figure
 
 
