@@ -217,6 +217,7 @@ def _constants(case: Case) -> dict[str, Any]:
         "track_model": case.track.model,
         "normal_contact_model": case.contact.normal,
         "tangential_contact_model": case.contact.tangential,
+        "friction_law": "none" if case.friction is None else case.friction.law,
         "case_title": _title(case),
     }
     return {name: values[name] for name in CONSTANTS}

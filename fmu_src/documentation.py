@@ -44,9 +44,13 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
         track_model=escape(str(start["track_model"])),
         normal_contact_model=escape(str(start["normal_contact_model"])),
         tangential_contact_model=escape(str(start["tangential_contact_model"])),
+        friction_law=escape(str(start["friction_law"])),
         coupling=escape(str(start["coupling"])),
         without_effect=_without_effect(
-            str(start["tangential_contact_model"]), wheel=str(start["wheel_model"]), track=str(start["track_model"])
+            str(start["tangential_contact_model"]),
+            wheel=str(start["wheel_model"]),
+            track=str(start["track_model"]),
+            friction=str(start["friction_law"]),
         ),
         guiding=_guiding(str(start["tangential_contact_model"]), wheel=str(start["wheel_model"])),
         inputs=_table("input", start),
@@ -58,7 +62,7 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
     )
 
 
-def _without_effect(tangential: str, *, wheel: str, track: str) -> str:
+def _without_effect(tangential: str, *, wheel: str, track: str, friction: str) -> str:
     """Say which ports this FMU accepts or shows although its model has no use for them."""
     inputs, outputs = ["wheel_y", "lateral_shift", "lateral_position"], []
     if tangential == "none":
@@ -68,6 +72,8 @@ def _without_effect(tangential: str, *, wheel: str, track: str) -> str:
     if tangential == "none" or wheel != "flexible":
         inputs += ["wheel_force_x", "wheel_force_y", "balance"]
         outputs += ["wheel_disp_x", "wheel_disp_y"]
+    if tangential != "transient" or friction in ("none", "constant"):
+        outputs += ["friction_method", "friction_solutions", "friction_force_spread"]
     if tangential == "none" or track != "waveguide":
         outputs += ["rail_disp_x", "rail_disp_y"]
     accepted, zero = (", ".join(f"<code>{name}</code>" for name in names) for names in (inputs, outputs))

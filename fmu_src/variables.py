@@ -403,7 +403,7 @@ _CONSTANTS = (
 )
 
 # Added after the first release of the table.
-_FRICTION_OUTPUTS = (
+_FRICTION = (
     Variable(
         "friction_method",
         "output",
@@ -431,9 +431,10 @@ _FRICTION_OUTPUTS = (
         minimum=0.0,
         nominal=1e3,
     ),
+    Variable("friction_law", "constant", "String", "how friction depends on the slip velocity"),
 )
 
-VARIABLES: tuple[Variable, ...] = _INPUTS + _OUTPUTS + _PARAMETERS + _CALCULATED + _CONSTANTS + _FRICTION_OUTPUTS
+VARIABLES: tuple[Variable, ...] = _INPUTS + _OUTPUTS + _PARAMETERS + _CALCULATED + _CONSTANTS + _FRICTION
 """Every variable; the place in the tuple is the FMI value reference."""
 
 INPUTS: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.role == "input")

@@ -97,6 +97,7 @@ class CoSimulation:
         self._inputs = self.model.start_inputs
         self._state: State | None = None
         self._stale = True
+        self._remarked = False
         self._backup = np.empty(0)
         self._clear_clock()
 
@@ -180,8 +181,9 @@ class CoSimulation:
         self._largest = self._smallest = float(state.block[FORCE])
         self._worst = [float(state.block[place]) for place in LARGEST.values()]
         self._check_residual(float(state.block[RESIDUAL]))
-        if self.model.tangential is not None:
+        if self.model.tangential is not None and not self._remarked:
             self.warnings += self.model.tangential.remarks
+            self._remarked = True  # not again for every input that is set before the first step
 
     def _current(self) -> State:
         if self._stale or self._state is None:
