@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from wheelrail.analysis.resonances import interaction_peaks, pinned_pinned_frequency
-from wheelrail.case import case_from_dict, default_case_text, parse_case
+from wheelrail.case import case_from_dict, default_case_text, load_case, parse_case
 from wheelrail.explain import explain
 from wheelrail.interaction.build import build_model
 from wheelrail.wheel.rigid import RigidWheel
@@ -194,3 +195,42 @@ def test_pinned_pinned_frequency_is_where_the_receptance_peaks(thesis_track):
     assert found == pytest.approx(942.5, abs=0.5)  # of this mesh, found by an eigenvalue; achieved: 0.2
     around = np.abs(track.receptance(0.325, [0.325], found * np.array([0.999, 1.0, 1.001])))[:, 0]
     assert around[1] == around.max()
+
+
+def falling(**friction):
+    """Thesis section 5.3.2: R 0.39 m on r 0.30 m, 65 kN, 50 km/h, lateral creepage 0.5 %."""
+    case = load_case(Path(__file__).parents[2] / "examples" / "cases" / "falling_friction.toml").to_dict()
+    case["friction"] |= friction
+    return case_from_dict(case)
+
+
+def test_falling_friction_is_explained_and_memory_recommended():
+    text = explain(falling())
+    assert "kraft as printed (at rest 0.7 of the coefficient)" in text
+    # mu_s (20 / (100 + s^2) + 0.1 / (0.2 + s)) at s = 0.0694 m/s
+    assert "0.0694 m/s if all of it slides: mu = 0.171, slope -0.413 s/m" in " ".join(text.split())
+    # The fall -s d mu/ds of the formula's second term is largest at 0.2 m/s; the first adds at higher s. Compliance of
+    # a circle of the same area, (2 - nu) / (4 G a): 1 % from that of the ellipse.
+    s = np.linspace(1e-3, 10.0, 100_000)
+    fall = 0.3 * np.max(40.0 * s**2 / (100.0 + s**2) ** 2 + 0.1 * s / (0.2 + s) ** 2)
+    distance = 65e3 * fall * 1.7 / (4.0 * 207e9 / 2.6 * np.sqrt(5.75e-3 * 4.83e-3))
+    assert number(text, "memory for steady sliding") == pytest.approx(1e6 * distance, rel=0.05)
+    assert "friction.memory_distance = 3e-06 (m) with memory_speed = 1e-3 cures that" in " ".join(text.split())
+    assert "all solutions" in text
+
+
+def test_memory_is_warned_of_only_if_it_is_too_short():
+    def warnings(**friction):
+        return explain(falling(**friction)).split("Warnings\n--------\n")[1].split("\n\n")[0]
+
+    assert warnings(memory_distance=3e-6, memory_speed=1e-3) == "none"
+    assert "is below 2.5 um" in warnings(memory_distance=1e-6, memory_speed=1e-3)
+    assert warnings(law="constant", normalise=None) == "none"
+
+
+def test_point_contact_is_explained():
+    case = falling(memory_distance=3e-6, memory_speed=1e-3, find_solutions=False).to_dict()
+    case["contact"]["tangential"] = "friction-curve"
+    text = explain(case_from_dict(case))
+    assert "contact spring C (Mindlin 1949)" in text
+    assert "d mu / dt = -max(s, s0) / d_c (mu - mu_law(s))" in text
