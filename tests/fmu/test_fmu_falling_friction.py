@@ -33,6 +33,7 @@ def case_with(**friction) -> Case:
     """Thesis section 5.3.2 on 1 mm, normalised law."""
     data = load_case(ROOT / "examples" / "cases" / "falling_friction.toml").to_dict()
     data["simulation"]["dx"] = 1e-3
+    data["excitation"] = []
     data["contact"] |= {"dy": 1e-3, "length": 19e-3, "width": 19e-3}
     data["friction"] |= {"normalise": True, **friction}
     return case_from_dict(data)
