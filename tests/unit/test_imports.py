@@ -58,7 +58,15 @@ RUNTIME = [
     ),
     *(
         f"contact/creep/{name}.py"
-        for name in ("__init__", "creep_force", "friction_curve", "kalker_coefficients", "linear", "fastsim")
+        for name in (
+            "__init__",
+            "contact_spring",
+            "creep_force",
+            "friction_curve",
+            "kalker_coefficients",
+            "linear",
+            "fastsim",
+        )
     ),
     *(f"excitation/{name}.py" for name in ("line", "sampled_heights", "sinusoid", "sources", "spectrum_line")),
     "excitation/synthesis.py",

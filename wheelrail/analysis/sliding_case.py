@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case import Case
+from ..contact.creep.contact_spring import tangential_compliance
 from ..contact.creep.linear import linear_creep_force
 from ..contact.creep.vermeulen_johnson import saturated_fraction
-from ..contact.point_contact import tangential_compliance
 from ..errors import CaseError
 from ..interaction.build import hertz_of
 from ..interaction.friction import law_of, slip_friction_of, static_friction_of

@@ -6,9 +6,9 @@ import numpy as np
 
 from wheelrail.case import Case
 from wheelrail.case.friction_sections import ConstantFriction
+from wheelrail.contact.creep.contact_spring import tangential_compliance
 from wheelrail.contact.friction.laws import steepest_fall
 from wheelrail.contact.hertz import HertzContact
-from wheelrail.contact.point_contact import tangential_compliance
 from wheelrail.interaction.friction import law_of, slip_friction_of, static_friction_of
 
 __all__ = ["critical_memory_distance", "explain_friction"]
