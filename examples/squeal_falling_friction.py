@@ -16,7 +16,7 @@ from wheelrail.analysis.sliding_case import case_stability
 from wheelrail.analysis.squeal import amplitude_spectrum, nearest_mode
 from wheelrail.case import case_from_dict, load_case
 from wheelrail.interaction.build import build_model, wheel_of
-from wheelrail.interaction.friction import law_of, static_friction_of
+from wheelrail.interaction.friction import largest_friction_of
 from wheelrail.interaction.simulate import Simulation
 from wheelrail.plotting.falling_friction import spectra_figure
 from wheelrail.plotting.squeal import squeal_figure
@@ -115,7 +115,7 @@ def main():
     squeal_figure(
         time=whole["time"],
         force=whole["force_y"],
-        bound=static_friction_of(case) * float(law_of(case).evaluate(np.zeros(1))[0][0]) * whole["force_z"],
+        bound=largest_friction_of(case) * whole["force_z"],
         slip_fraction=whole["slip_fraction"],
         frequency=measured["all modes"][0],
         title="Squeal with falling friction: lateral contact force",

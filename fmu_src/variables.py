@@ -402,14 +402,14 @@ _CONSTANTS = (
     Variable("case_title", "constant", "String", "title of the case the FMU was built from"),
 )
 
-# Added after the first release of the table.
+# Added later than the table above.
 _FRICTION = (
     Variable(
         "friction_method",
         "output",
         "Integer",
-        "what found slip-velocity dependent friction, largest within the communication step: 0 friction is constant, "
-        "1 Newton's method, 2 Broyden's method, 3 direct iteration",
+        "what found slip-velocity dependent friction, largest within the communication step: 0 nothing to find "
+        "(constant friction, a point contact, no contact), 1 Newton's method, 2 Broyden's method, 3 direct iteration",
         minimum=0.0,
         maximum=3.0,
     ),

@@ -287,7 +287,7 @@ def _stability(options: argparse.Namespace) -> int:
     print(f"wheel modes that can squeal: {count}: {names}")
     if loop.contact_unstable:
         print(
-            "the contact by itself is unstable: friction falls faster than its memory lets it; "
+            "the contact by itself is unstable: friction falls, and its memory is too short or missing; "
             f"friction.memory_distance above {1e6 * loop.critical_memory_distance:.2g} um cures that"
         )
     others = result.growing - count - loop.contact_unstable

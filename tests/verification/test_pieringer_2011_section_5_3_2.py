@@ -13,7 +13,6 @@ import pytest
 from scipy.signal import butter, hilbert, sosfiltfilt
 
 from wheelrail.analysis.sliding_case import sliding_loop
-from wheelrail.analysis.squeal import amplitude_spectrum
 from wheelrail.analysis.stability import mode_stability
 from wheelrail.case import Case, case_from_dict
 from wheelrail.interaction.build import build_model
@@ -88,10 +87,3 @@ def test_more_memory_makes_high_modes_stable():
         growing[distance] = {mode.name for mode in mode_stability(loop) if mode.unstable}
     assert growing[3e-6] >= {f"{n},0,a" for n in range(1, 9)}
     assert growing[300e-6] < growing[30e-6] <= growing[3e-6]
-    # No growth at 7 kHz in the run either: a 30 ms run with the longest memory keeps quiet above 4 kHz.
-    model = build_model(squeal_case(memory_distance=300e-6, amplitude=1e-7))
-    run = Simulation(model, duration=0.03, record=["force_y"]).collect()
-    half = len(run["force_y"]) // 2
-    bands = [amplitude_spectrum(run["force_y"][part], dt=model.dt) for part in (slice(half), slice(half, 2 * half))]
-    high = [float(np.linalg.norm(amplitude[frequency > 4e3])) for frequency, amplitude in bands]
-    assert high[1] < high[0]

@@ -10,7 +10,6 @@ from typing import Any
 __all__ = ["friction_faults"]
 
 _OF_TRANSIENT = {"solver": "newton", "branch": "previous", "find_solutions": False}
-_MODELS = ("transient", "friction-curve")
 
 
 def friction_faults(friction: Mapping[str, Any], contact: Mapping[str, Any]) -> Iterator[str]:

@@ -53,7 +53,7 @@ class _SlipDependent(Section):
 class ConstantFriction(_SlipDependent):
     """``[friction]`` after Coulomb; without effect while there is no tangential contact model.
 
-    It takes the keys of the other laws, without effect, so that laws can be swapped.
+    It takes the keys that the other laws share, without effect, so that laws can be swapped.
     """
 
     law: Literal["constant"] = Field(description="Friction law: constant coefficient")

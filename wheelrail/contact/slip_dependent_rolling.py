@@ -120,7 +120,8 @@ def roll_slip_dependent(
     state = solve_slip_friction(problem, previous[:, contact], guess, solver=friction.solver)
     count, spread = 0, 0.0
     if friction.find_solutions:
-        found = find_solutions(problem, previous[:, contact], speed[contact], between=False)
+        known = state if friction.branch == "previous" else None
+        found = find_solutions(problem, previous[:, contact], speed[contact], between=False, known=known)
         count, spread = len(found), force_spread(problem, found)
     if compliance is not None:
         force = half_space.element_area * state.tractions.sum(axis=1)

@@ -33,6 +33,7 @@ TOLERANCE = 1e-10  # of the residual
 ROUNDING = 1e-9  # a residual below which a step that brings nothing more is taken for rounding
 MAXIMUM_ITERATIONS = 100
 GRADIENT_STEPS = 20
+_NO_FRICTION = 1e-15  # of the largest bound, for elements on which friction has vanished
 
 
 @dataclass(frozen=True)
@@ -152,9 +153,10 @@ def solve_tangential(
     TangentialState
         With a residual above `TOLERANCE` only if rounding forbids more.
     """
-    k, g = len(problem.contact), problem.bound
-    if k == 0 or not np.any(g > 0.0):  # nothing to hold: everything slides freely
+    k = len(problem.contact)
+    if k == 0 or not np.any(problem.bound > 0.0):  # nothing to hold: everything slides freely
         return TangentialState(np.zeros((2, k)), problem.shift.copy(), np.ones(k, dtype=bool), 0, 0.0)
+    g = np.maximum(problem.bound, _NO_FRICTION * float(problem.bound.max()))
     A = influence_matrix(problem) if matrix is None else matrix
     h = problem.shift
     rho = 1.0 / A[0, 0]  # makes tractions of slip; any positive number gives the same solution

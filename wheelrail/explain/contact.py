@@ -71,6 +71,8 @@ def explain_what_has_no_effect(case: Case) -> list[str]:
         parts = [name for name in ("friction", "creepage") if getattr(case, name) is not None]
         if parts:
             lines.append(f"[{'], ['.join(parts)}]: there is no tangential contact model")
+    if case.contact.tangential == "linear" and case.friction is not None:
+        lines.append("[friction]: Kalker's linear theory has no friction limit")
     if case.friction is not None and case.friction.law == "constant":
         keys = ("memory_distance", "memory_speed", "solver", "branch", "find_solutions")
         given = [key for key in keys if key in case.friction.model_fields_set]

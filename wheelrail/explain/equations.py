@@ -87,7 +87,8 @@ def _friction_equations(case: Case) -> list[str]:
     if case.contact.tangential == "friction-curve":
         lines = [_equation("mu = mu_law(s)", f"friction.law = {friction.law}")]
     if friction.memory_distance > 0.0:
-        lines.append(_equation("d mu / dt = -max(s, s0) / d_c (mu - mu_law(s))", "of the particle; Vollebregt 2014"))
+        whose = "the particle" if case.contact.tangential == "transient" else "the contact"
+        lines.append(_equation("d mu / dt = -max(s, s0) / d_c (mu - mu_law(s))", f"of {whose}; Vollebregt 2014"))
     return lines
 
 
@@ -133,7 +134,8 @@ def explain_sources(case: Case, track: TrackModel | None) -> list[str]:
         lines.append(
             "Kalker 1990, Three-dimensional elastic bodies in rolling contact (NORM, TANG, creepage coefficients)"
         )
-    if case.friction is not None and case.friction.law != "constant" and case.contact.tangential != "none":
+    slips = case.contact.tangential in ("transient", "friction-curve")
+    if case.friction is not None and case.friction.law != "constant" and slips:
         lines.append(
             "Vollebregt and Schuttelaars 2012, J. Sound Vib. 331 (several solutions with slip-velocity dependent "
             "friction)"

@@ -62,8 +62,8 @@ def explain_friction(case: Case, hertz: HertzContact, warnings: list[str]) -> li
     lines.append(f"memory                    {memory}" + _recovery(case))
     if critical > 0.0:
         lines.append(
-            f"memory for steady sliding {critical * 1e6:.2g} um or more keeps the contact by itself steady at any slip "
-            "velocity (Rice and Ruina 1983)"
+            f"memory for steady sliding {critical * 1e6:.2g} um or more keeps the contact by itself steady at all slip "
+            "velocities up to 10 m/s (Rice and Ruina 1983)"
         )
     settings = slip_friction_of(case)
     if contact.tangential == "transient" and settings is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..case import Case
 from ..case.friction_sections import (
     ConstantFriction,
@@ -23,7 +25,7 @@ from ..contact.friction.laws import (
 from ..contact.friction.memory import FrictionMemory
 from ..contact.friction.settings import SlipFriction
 
-__all__ = ["law_of", "slip_friction_of", "static_friction_of"]
+__all__ = ["largest_friction_of", "law_of", "slip_friction_of", "static_friction_of"]
 
 
 def static_friction_of(case: Case) -> float:
@@ -51,6 +53,12 @@ def law_of(case: Case) -> FrictionLaw:
         case TableFriction(speeds=speeds, coefficients=coefficients):
             return TableLaw(speeds, tuple(value / coefficients[0] for value in coefficients))
     return ConstantLaw()
+
+
+def largest_friction_of(case: Case) -> float:
+    """Return the largest coefficient that the law of a case gives up to 100 m/s."""
+    ratio, _ = law_of(case).evaluate(np.concatenate([[0.0], np.geomspace(1e-4, 100.0, 2000)]))
+    return static_friction_of(case) * float(ratio.max())
 
 
 def slip_friction_of(case: Case) -> SlipFriction | None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wheelrail.contact.half_space_contact import HalfSpaceContact
+from wheelrail.contact.point_contact import PointContact
 from wheelrail.contact.slip_dependent_model import SlipDependentRolling
 from wheelrail.contact.tangential_models import TransientRolling
 from wheelrail.interaction.model import Model
@@ -36,7 +37,7 @@ def contact_of(model: Model, state: State) -> ContactMap:
     Raises
     ------
     PlotError
-        If the model has no half-space contact.
+        If the model has no half-space contact, or a point for the tangential contact.
     """
     if not isinstance(model.contact, HalfSpaceContact):
         raise PlotError('there is no contact area to draw: it takes contact.normal = "half-space"')
@@ -44,6 +45,10 @@ def contact_of(model: Model, state: State) -> ContactMap:
     shape = (grid.my, grid.mx)
     tractions, slipping = np.zeros((2, *shape)), np.zeros(shape, dtype=bool)
     friction: float | NDArray = model.parameters.friction_coefficient
+    if isinstance(model.tangential, PointContact):
+        raise PlotError(
+            'there are no tractions to draw: contact.tangential = "friction-curve" is a point; "transient" has them'
+        )
     if isinstance(model.tangential, TransientRolling | SlipDependentRolling):
         n = grid.elements
         tractions = state.tangential[: 2 * n].reshape(2, *shape).copy()

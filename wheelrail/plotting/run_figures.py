@@ -12,7 +12,7 @@ from scipy.signal import find_peaks
 
 from wheelrail.analysis.squeal import amplitude_spectrum, squeal_measures
 from wheelrail.case import Case
-from wheelrail.interaction.friction import law_of, static_friction_of
+from wheelrail.interaction.friction import largest_friction_of
 
 from .force import force_figure, spectrum_figure
 from .squeal import squeal_figure, squeal_spectrum_figure
@@ -107,7 +107,7 @@ def _lateral(
         "lateral_force": squeal_figure(
             time=dataset["time"].values,
             force=lateral,
-            bound=static_friction_of(case) * float(law_of(case).evaluate(np.zeros(1))[0][0]) * vertical,
+            bound=largest_friction_of(case) * vertical,
             slip_fraction=slip,
             frequency=frequency,
             title=title,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 from contact_conditions import STEEL, displacement, particle_work, traction_residual
 
-from wheelrail.contact.friction.laws import ConstantLaw, ExponentialLaw, FrictionLaw, KraftLaw, TableLaw
+from wheelrail.contact.friction.laws import ConstantLaw, ExponentialLaw, FrictionLaw, KraftLaw, PolachLaw, TableLaw
 from wheelrail.contact.friction.memory import FrictionMemory
 from wheelrail.contact.friction.settings import SlipFriction
 from wheelrail.contact.half_space import HalfSpace
@@ -285,3 +286,30 @@ def test_steady_rolling_of_a_contact_that_fills_its_grid():
     last = transient(friction, (0.0, 3e-3, 0.0), 200, half_space=grid, normal=normal)[-1]
     state = steady(friction, 0.0, 3e-3, 0.0, half_space=grid, normal=normal)
     assert state.rolling.force_y == pytest.approx(last.rolling.force_y, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("law", "creepage"),
+    [
+        (TableLaw((0.0, 0.05, 1.0), (0.33, 1.0, 1.0)), 2e-3),
+        (TableLaw((0.0, 0.02, 1.0), (0.17, 1.0, 1.0)), 2e-3),
+        (TableLaw((0.0, 0.02, 0.1, 1.0), (0.33, 1.0, 1.0, 0.2)), 5e-3),
+    ],
+)
+@pytest.mark.parametrize("memory", [None, MEMORY])
+def test_friction_that_rises_first(law, creepage, memory):
+    """Iterating between contact and law swings there."""
+    states = transient(SlipFriction(law, memory), (0.0, creepage, 0.0), 40)
+    assert max(state.rolling.residual for state in states) < 1e-8  # 1e-10
+    assert max(state.rolling.iterations for state in states) < 60
+
+
+@pytest.mark.parametrize("solver", ["newton", "broyden"])
+def test_friction_that_vanishes_on_some_elements(solver):
+    """exp(-B s) is exactly 0 on those that slip fast."""
+    friction = SlipFriction(PolachLaw(0.0, 1e5), None, solver)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        states = transient(friction, (0.0, 1e-3, 0.0), 20)
+    assert all(np.isfinite(state.rolling.force_y) for state in states)
+    assert min(state.coefficient.min() for state in states) == 0.0

@@ -48,7 +48,12 @@ class Solution:
 
 
 def find_solutions(
-    problem: SlipFrictionProblem, tractions: NDArray, speed: NDArray, *, between: bool = True
+    problem: SlipFrictionProblem,
+    tractions: NDArray,
+    speed: NDArray,
+    *,
+    between: bool = True,
+    known: SlipFrictionState | None = None,
 ) -> tuple[Solution, ...]:
     """Look for all solutions.
 
@@ -62,6 +67,8 @@ def find_solutions(
     between : bool
         Also search for a solution between two others, which takes long. Without, it is found only if it is near the
         tractions of the step before.
+    known : SlipFrictionState, optional
+        Solution from the slip of the step before, if it is at hand.
 
     Returns
     -------
@@ -75,7 +82,9 @@ def find_solutions(
     publication has five: two more lie next to the middle one, which itself repels in two directions.
     """
     found: list[SlipFrictionState] = []
-    for guess in (np.zeros_like(speed), problem.speed(problem.shift), speed):
+    if known is not None:
+        _add(found, known)
+    for guess in (np.zeros_like(speed), problem.speed(problem.shift), *([speed] if known is None else [])):
         _add(found, solve_slip_friction(problem, tractions, guess))
     if len(problem.contact):
         _try_newton(problem, tractions, found)

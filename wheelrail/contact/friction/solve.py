@@ -23,6 +23,7 @@ SOLVERS = ("newton", "broyden")
 _ROUNDS = (16, 32, 64, 128)  # looks at the friction law between attempts of Newton's method
 _FIRST, _BETWEEN = 20, 4  # descent steps before the first and the other looks
 _NEAR = 1e-3  # a residual from which Newton's method takes over at once
+_LEAST = 0.02  # relaxation factor
 _CERTAIN = 3  # Newton steps up to which the solution is taken for that next to its start
 
 
@@ -79,13 +80,16 @@ def _improve(
     problem: SlipFrictionProblem, p: NDArray, coefficient: NDArray, lipschitz: float, rounds: int, *, first: bool
 ) -> tuple[NDArray, NDArray]:
     """Descend with bounds that follow the law."""
-    steps = _FIRST if first else _BETWEEN
+    steps, relaxation, last = _FIRST if first else _BETWEEN, 1.0, np.zeros_like(coefficient)
     for _ in range(rounds):
         p = accelerated_gradient(
             problem.matrix, p, problem.shift, coefficient * problem.pressure, lipschitz=lipschitz, steps=steps
         )
         at = problem.evaluate(p)
-        coefficient, steps = at.coefficient, _BETWEEN
+        change, steps = at.coefficient - coefficient, _BETWEEN
+        if float(change @ last) < 0.0:  # it swings, as where friction rises
+            relaxation = max(0.5 * relaxation, _LEAST)
+        coefficient, last = coefficient + relaxation * change, change
         if at.residual <= _NEAR:
             break
     return p, coefficient
