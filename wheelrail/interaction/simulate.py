@@ -6,6 +6,7 @@ import logging
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,10 @@ from .step import step
 __all__ = ["BLOCK", "Simulation", "Statistics", "simulate", "stand_alone_inputs", "step_count"]
 
 BLOCK = 4096
-"""Steps that are computed between two looks at anything else."""
+"""Steps that are computed between two looks at anything else, at most."""
+
+LONGEST_BLOCK = 1.0
+"""Seconds of computing after which a block ends in any case."""
 
 _log = logging.getLogger(__name__)
 
@@ -112,9 +116,9 @@ def stand_alone_inputs(model: Model) -> Inputs:
 class Simulation:
     """A run under constant inputs; iterate over it to get its blocks.
 
-    Each block is a dict of arrays of shape (n,), n <= ``block``: ``time`` (s) and ``distance`` (m) since the start,
-    ``step`` (the number of each), and the recorded outputs. The first row of a new run is the start, step 0. If a step
-    can't be done, what was computed before it comes as a last block, then the error.
+    Each block is a dict of arrays of shape (n,), n <= ``block`` and less where steps are slow: ``time`` (s) and
+    ``distance`` (m) since the start, ``step`` (the number of each), and the recorded outputs. The first row of a new run
+    is the start, step 0. If a step can't be done, what was computed before it comes as a last block, then the error.
 
     Parameters
     ----------
@@ -187,9 +191,9 @@ class Simulation:
             rows[0], count = scalars, 1
         remaining = self.steps - state.step
         while remaining > 0 or count:
-            now = min(len(rows) - count, remaining)
-            trouble = None
-            for _ in range(now):
+            most = min(len(rows) - count, remaining)
+            done, trouble, deadline = 0, None, perf_counter() + LONGEST_BLOCK
+            while done < most:
                 try:
                     step(model, state, inputs)
                 except WheelrailError as error:
@@ -197,7 +201,10 @@ class Simulation:
                     break
                 rows[count] = scalars
                 count += 1
-            remaining -= now
+                done += 1
+                if perf_counter() > deadline:  # slow steps: whoever iterates wants to look at something else as well
+                    break
+            remaining -= done
             if count:
                 yield self._block(rows[:count])
             if trouble is not None:
