@@ -117,8 +117,9 @@ class Simulation:
     """A run under constant inputs; iterate over it to get its blocks.
 
     Each block is a dict of arrays of shape (n,), n <= ``block`` and less where steps are slow: ``time`` (s) and
-    ``distance`` (m) since the start, ``step`` (the number of each), and the recorded outputs. The first row of a new run
-    is the start, step 0. If a step can't be done, what was computed before it comes as a last block, then the error.
+    ``distance`` (m) since the start, ``step`` (the number of each), and the recorded outputs. The first row of a new
+    run is the start, step 0. If a step can't be done, what was computed before it comes as a last block, then the
+    error.
 
     Parameters
     ----------
