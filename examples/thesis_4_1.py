@@ -26,7 +26,7 @@ from wheelrail.contact.spring import HertzSpring
 from wheelrail.interaction.build import build_model, track_of, wheel_of
 from wheelrail.interaction.cosimulation import CoSimulation
 from wheelrail.interaction.model import Model
-from wheelrail.reference.direct_integration import integrate_interaction
+from wheelrail.reference.direct_integration import hertz_law, integrate_interaction
 from wheelrail.track.discrete import DiscreteTrack
 from wheelrail.wheel.rigid import RigidWheel
 
@@ -109,11 +109,10 @@ def compare(excitation: str, *, bays: int = 240, sleeper_bays: int = 16, refinem
     direct = integrate_interaction(
         track,
         wheel,
-        hertz_constant=model.contact.constant,
+        law=hertz_law(model.contact.constant, felt_roughness(model, steps)),
         preload=LOAD,
         speed=SPEED,
         start=0.0,
-        roughness=felt_roughness(model, steps),
         dt=model.dt / refinement,
         steps=refinement * steps,
     )

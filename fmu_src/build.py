@@ -109,7 +109,7 @@ def build_fmu(case: Case, output_dir: str | Path, progress: Callable[[float], No
     entry = runtime.pop(_ENTRY_TEMPLATE).replace(b"RUNTIME_PACKAGE", package.encode())
 
     simulation = CoSimulation(model)
-    constants = _constants(case)
+    constants = _constants(case, model.geometry.description)
     start = {**simulation.inputs, **simulation.parameters, **constants}
     stop_time = float(case.simulation.duration) or STEP_SIZE
     step_size = min(STEP_SIZE, stop_time)
@@ -142,7 +142,12 @@ def build_fmu(case: Case, output_dir: str | Path, progress: Callable[[float], No
         duration=REFERENCE_STEPS * case.simulation.dx / case.simulation.speed,
     )
     files["documentation/index.html"] = documentation(
-        start=start, case_text=_case_text(case), title=_title(case), version=__version__, step_size=step_size
+        start=start,
+        lateral=model.lateral,
+        case_text=_case_text(case),
+        title=_title(case),
+        version=__version__,
+        step_size=step_size,
     ).encode()
     files["modelDescription.xml"] = described(guid(described(""), *(files[name] for name in sorted(files))))
     path = Path(output_dir) / f"{MODEL_IDENTIFIER}.fmu"
@@ -208,7 +213,7 @@ def _distribution_licence(name: str) -> bytes:
     raise BuildError(f"the licence text of {name} is missing from its installation; install it again.")
 
 
-def _constants(case: Case) -> dict[str, Any]:
+def _constants(case: Case, geometry: str) -> dict[str, Any]:
     """Return the fixed values that the FMU shows."""
     values: dict[str, Any] = {
         "dx": float(case.simulation.dx),
@@ -218,6 +223,7 @@ def _constants(case: Case) -> dict[str, Any]:
         "normal_contact_model": case.contact.normal,
         "tangential_contact_model": case.contact.tangential,
         "friction_law": "none" if case.friction is None else case.friction.law,
+        "contact_geometry": geometry,
         "case_title": _title(case),
     }
     return {name: values[name] for name in CONSTANTS}

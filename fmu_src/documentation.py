@@ -13,13 +13,17 @@ from .variables import ENUMERATIONS, VARIABLES, Variable
 __all__ = ["documentation"]
 
 
-def documentation(*, start: Mapping[str, Any], case_text: str, title: str, version: str, step_size: float) -> str:
+def documentation(
+    *, start: Mapping[str, Any], lateral: bool, case_text: str, title: str, version: str, step_size: float
+) -> str:
     """Return the page.
 
     Parameters
     ----------
     start : mapping of str to object
         Start values by variable name.
+    lateral : bool
+        The lateral position of the wheel on the rail makes a difference.
     case_text : str
         The case file that the FMU was built from.
     title, version : str
@@ -51,6 +55,7 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
             wheel=str(start["wheel_model"]),
             track=str(start["track_model"]),
             friction=str(start["friction_law"]),
+            lateral=lateral,
         ),
         guiding=_guiding(str(start["tangential_contact_model"]), wheel=str(start["wheel_model"])),
         inputs=_table("input", start),
@@ -62,9 +67,9 @@ def documentation(*, start: Mapping[str, Any], case_text: str, title: str, versi
     )
 
 
-def _without_effect(tangential: str, *, wheel: str, track: str, friction: str) -> str:
+def _without_effect(tangential: str, *, wheel: str, track: str, friction: str, lateral: bool) -> str:
     """Say which ports this FMU accepts or shows although its model has no use for them."""
-    inputs, outputs = ["wheel_y", "lateral_shift", "lateral_position"], []
+    inputs, outputs = [] if lateral else ["wheel_y", "lateral_shift", "lateral_position"], []
     if tangential == "none":
         inputs += ["creepage_x", "creepage_y", "creepage_spin", "friction_coefficient"]
         outputs += ["force_x", "force_y", "force_x_mean", "force_y_mean"]

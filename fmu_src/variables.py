@@ -38,6 +38,7 @@ UNITS: dict[str, dict[str, int]] = {
     "N/m": {"kg": 1, "s": -2},
     "Pa": {"kg": 1, "m": -1, "s": -2},
     "W": {"kg": 1, "m": 2, "s": -3},
+    "rad": {"rad": 1},
 }
 """Exponents of the SI base units for each unit in use."""
 
@@ -212,7 +213,8 @@ _INPUTS = (
         "wheel_y",
         "input",
         "Real",
-        "lateral rigid-body displacement of the wheel, positive to the field side; the slip takes it from creepage_y",
+        "lateral rigid-body displacement of the wheel, positive to the field side; with coupling = displacement it "
+        "adds to lateral_shift; the slip takes its velocity from creepage_y",
         "m",
         "Length",
         nominal=1e-4,
@@ -221,7 +223,7 @@ _INPUTS = (
         "lateral_shift",
         "input",
         "Real",
-        "lateral displacement of the wheelset on the rail",
+        "lateral displacement of the wheelset on the rail, positive to the field side",
         "m",
         "Length",
         nominal=1e-3,
@@ -352,7 +354,8 @@ _PARAMETERS = (
         "lateral_position",
         "parameter",
         "Real",
-        "lateral position of the line of contact",
+        "lateral position of the contact on a straight tread without lateral shift, from the tape circle; profiles "
+        "decide for themselves",
         "m",
         "Length",
         nominal=1e-2,
@@ -433,8 +436,57 @@ _FRICTION = (
     ),
     Variable("friction_law", "constant", "String", "how friction depends on the slip velocity"),
 )
+_GEOMETRY = (
+    Variable(
+        "contact_y_wheel",
+        "output",
+        "Real",
+        "lateral position of the contact on the wheel from the tape circle, positive to the field side",
+        "m",
+        "Length",
+        nominal=1e-2,
+    ),
+    Variable(
+        "contact_y_rail",
+        "output",
+        "Real",
+        "lateral position of the contact on the rail from its axis, positive to the field side",
+        "m",
+        "Length",
+        nominal=1e-2,
+    ),
+    Variable(
+        "contact_angle",
+        "output",
+        "Real",
+        "contact angle, positive where the flange climbs",
+        "rad",
+        "Angle",
+        nominal=1e-2,
+    ),
+    Variable("rolling_radius", "output", "Real", "radius of the wheel at the contact", "m", "Length", nominal=0.1),
+    Variable(
+        "contact_points",
+        "output",
+        "Integer",
+        "largest number of places within the communication step where the undeformed bodies overlap",
+        minimum=0.0,
+    ),
+    Variable(
+        "missed_overlap",
+        "output",
+        "Real",
+        "largest overlap of the undeformed bodies at a place outside of the potential contact area, where no force "
+        "is computed; should be 0",
+        "m",
+        "Length",
+        minimum=0.0,
+        nominal=1e-5,
+    ),
+    Variable("contact_geometry", "constant", "String", "profiles of wheel and rail"),
+)
 
-VARIABLES: tuple[Variable, ...] = _INPUTS + _OUTPUTS + _PARAMETERS + _CALCULATED + _CONSTANTS + _FRICTION
+VARIABLES: tuple[Variable, ...] = _INPUTS + _OUTPUTS + _PARAMETERS + _CALCULATED + _CONSTANTS + _FRICTION + _GEOMETRY
 """Every variable; the place in the tuple is the FMI value reference."""
 
 INPUTS: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.role == "input")

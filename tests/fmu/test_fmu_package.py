@@ -35,7 +35,8 @@ INTERFACE = {
     "output": "force_x force_y force_z force_x_mean force_y_mean force_z_mean force_z_max force_z_min moment_spin "
     "wheel_disp_x wheel_disp_y wheel_disp_z rail_disp_x rail_disp_y rail_disp_z contact_stiffness_z contact_area "
     "contact_length contact_width pressure_max slip_fraction friction_power approach in_contact distance "
-    "solver_iterations solver_residual friction_method friction_solutions friction_force_spread",
+    "solver_iterations solver_residual friction_method friction_solutions friction_force_spread "
+    "contact_y_wheel contact_y_rail contact_angle rolling_radius contact_points missed_overlap",
     "parameter": "speed friction_coefficient start_position lateral_position coupling balance input_extrapolation "
     "roughness_scale random_seed record",
 }
@@ -270,7 +271,7 @@ def test_command(quick_case: Case, quick_path: Path, tmp_path: Path, capsys: pyt
     assert main([str(file), "--output", str(tmp_path / "deep" / "er")]) == 0
     out = capsys.readouterr().out
     path = tmp_path / "deep" / "er" / "WheelRail.fmu"
-    assert out == f"{path}: {path.stat().st_size / 1e3:.0f} kB, 39 ports\n"
+    assert out == f"{path}: {path.stat().st_size / 1e3:.0f} kB, 45 ports\n"
     assert path.read_bytes() == quick_path.read_bytes()
 
 

@@ -25,7 +25,7 @@ FORBIDDEN_EVERYWHERE_BELOW = {"analysis", "study", "cli"}
 CORE = {"numerics", "wheel", "track", "excitation", "contact", "greens", "interaction"}
 
 # Of the interaction, what turns a case into a model.
-PREPARATION = {f"interaction/{name}.py" for name in ("build", "friction", "tracks", "wheel_sources", "wheels")}
+PREPARATION = {f"interaction/{name}.py" for name in ("build", "contacts", "friction", "tracks", "wheel_sources", "wheels")}
 
 # Shipped inside the FMU.
 RUNTIME = [
@@ -36,7 +36,8 @@ RUNTIME = [
         f"interaction/{name}.py"
         for name in ("cosimulation", "inputs", "model", "model_file", "parameters", "start", "state", "step")
     ),
-    *(f"contact/{name}.py" for name in ("bedding", "newton", "parts", "solution", "spring", "tangential_models")),
+    *(f"interaction/{name}.py" for name in ("geometry_parts", "surfaces")),
+    *(f"contact/{name}.py" for name in ("bedding", "geometry", "newton", "parts", "solution", "spring", "tangential_models")),
     *(
         f"contact/{name}.py"
         for name in ("influence", "half_space", "half_space_contact", "normal", "rolling", "tangential")
@@ -69,6 +70,7 @@ RUNTIME = [
         )
     ),
     *(f"excitation/{name}.py" for name in ("line", "sampled_heights", "sinusoid", "sources", "spectrum_line")),
+    *(f"excitation/{name}.py" for name in ("corrugation", "irregularity", "lateral_interpolation", "out_of_round")),
     "excitation/synthesis.py",
     *(
         f"greens/{name}.py"

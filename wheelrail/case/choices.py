@@ -21,7 +21,7 @@ LATER_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
     ("contact", "normal"): (),
     ("contact", "tangential"): (),
     ("friction", "law"): (),
-    ("excitation", "type"): ("wheel-flat", "rail-joint"),
+    ("excitation", "type"): (),
 }
 """Values by section and key; every key that selects a model is here, also where nothing is to come."""
 

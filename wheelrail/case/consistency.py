@@ -6,18 +6,12 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from wheelrail.case.excitation_rules import excitation_faults
 from wheelrail.case.friction_rules import friction_faults
+from wheelrail.case.numbers import number, positive, shown, steps
 from wheelrail.case.structure_rules import structure_faults
 
 __all__ = ["cross_faults", "excitation_label", "shown"]
-
-GRID_TOLERANCE = 1e-6
-"""A length counts as n grid steps if it is so to this share of a step; decimal fractions are not exact."""
-
-
-def shown(value: float) -> str:
-    """Return a number as a user would type it."""
-    return f"{value:.12g}"
 
 
 def excitation_label(index: int) -> str:
@@ -41,21 +35,21 @@ def cross_faults(data: Mapping[str, Any]) -> list[str]:
     """
     simulation, track, contact = (_table(data, name) for name in ("simulation", "track", "contact"))
     faults: list[str] = []
-    dx = _positive(simulation, "dx")
+    dx = positive(simulation, "dx")
     if dx is not None:
         faults += _start_faults(simulation, dx)
         if "discrete" in (track.get("model"), track.get("support")):
             faults += _spacing_faults(track, dx)
-        faults += _odd_faults("contact.length", _positive(contact, "length"), "simulation.dx", dx)
+        faults += _odd_faults("contact.length", positive(contact, "length"), "simulation.dx", dx)
     faults += structure_faults(_table(data, "wheel"), track)
-    faults += _odd_faults("contact.width", _positive(contact, "width"), "contact.dy", _positive(contact, "dy"))
+    faults += _odd_faults("contact.width", positive(contact, "width"), "contact.dy", positive(contact, "dy"))
     faults += _prefilter_faults(contact)
     faults += _tangential_faults(data)
     faults += friction_faults(_table(data, "friction"), contact)
     excitations = data.get("excitation")
     for index, excitation in enumerate(excitations if isinstance(excitations, list) else ()):
         if isinstance(excitation, dict):
-            faults += _excitation_faults(excitation_label(index), excitation, dx)
+            faults += excitation_faults(excitation_label(index), excitation, dx)
     faults += _record_faults(_table(data, "output"))
     return faults
 
@@ -65,34 +59,11 @@ def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return table if isinstance(table, dict) else {}
 
 
-def _number(table: Mapping[str, Any], key: str) -> float | None:
-    value = table.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        return float(value) if math.isfinite(value) else None
-    except OverflowError:
-        return None
-
-
-def _positive(table: Mapping[str, Any], key: str) -> float | None:
-    value = _number(table, key)
-    return value if value is not None and value > 0 else None
-
-
-def _steps(length: float, step: float) -> tuple[float, bool]:
-    """Nearest whole number of steps in a length, and whether the length is that number of steps."""
-    count = length / step
-    if not math.isfinite(count):
-        return 0.0, False
-    return round(count) + 0.0, abs(count - round(count)) <= GRID_TOLERANCE
-
-
 def _start_faults(simulation: Mapping[str, Any], dx: float) -> Iterator[str]:
-    start = _number(simulation, "start_position")
+    start = number(simulation, "start_position")
     if start is None:
         return
-    count, fits = _steps(start, dx)
+    count, fits = steps(start, dx)
     if not fits:
         yield (
             f"simulation.start_position = {shown(start)}: must be a multiple of simulation.dx = {shown(dx)} (m); "
@@ -101,10 +72,10 @@ def _start_faults(simulation: Mapping[str, Any], dx: float) -> Iterator[str]:
 
 
 def _spacing_faults(track: Mapping[str, Any], dx: float) -> Iterator[str]:
-    spacing = _positive(track, "sleeper_spacing")
+    spacing = positive(track, "sleeper_spacing")
     if spacing is None:
         return
-    count, fits = _steps(spacing, dx)
+    count, fits = steps(spacing, dx)
     if not fits or count < 1:
         yield (
             f"track.sleeper_spacing = {shown(spacing)}: must be a multiple of simulation.dx = {shown(dx)} (m); "
@@ -115,7 +86,7 @@ def _spacing_faults(track: Mapping[str, Any], dx: float) -> Iterator[str]:
 def _odd_faults(name: str, length: float | None, step_name: str, step: float | None) -> Iterator[str]:
     if length is None or step is None:
         return
-    count, fits = _steps(length, step)
+    count, fits = steps(length, step)
     if fits and count % 2 == 1:
         return
     below = 2 * math.floor((length / step - 1) / 2) + 1 if math.isfinite(length / step) else -1
@@ -148,42 +119,6 @@ def _tangential_faults(data: Mapping[str, Any]) -> Iterator[str]:
             f'creepage: missing; contact.tangential = "{tangential}" needs the section [creepage] with x, y, spin; '
             "an FMU starts with these values"
         )
-
-
-def _excitation_faults(label: str, excitation: Mapping[str, Any], dx: float | None) -> Iterator[str]:
-    match excitation.get("type"):
-        case "sinusoid":
-            wavelength = _positive(excitation, "wavelength")
-            if wavelength is not None and dx is not None and wavelength <= 2 * dx * (1 + GRID_TOLERANCE):
-                yield (
-                    f"{label}.wavelength = {shown(wavelength)}: must be > 2 simulation.dx = {shown(2 * dx)} "
-                    "(m); the grid can't carry a shorter one"
-                )
-        case "measured":
-            if excitation.get("on") == "wheel" and "beyond_end" in excitation:
-                yield f'{label}.beyond_end: not used with on = "wheel": the line repeats every turn; leave it out'
-        case "spectrum":
-            yield from _spectrum_faults(label, excitation, dx)
-
-
-def _spectrum_faults(label: str, excitation: Mapping[str, Any], dx: float | None) -> Iterator[str]:
-    if "name" in excitation and "file" in excitation:
-        yield f"{label}: name and file both given; give one of them"
-    elif "name" not in excitation and "file" not in excitation:
-        yield f"{label}.name: missing; give name (a spectrum that comes with the program) or file (a CSV file)"
-    if "length" not in excitation:
-        return
-    if excitation.get("on") == "wheel":
-        yield f'{label}.length: not used with on = "wheel": the line repeats every turn; leave it out'
-        return
-    length = _positive(excitation, "length")
-    if length is not None and dx is not None:
-        count, fits = _steps(length, dx)
-        if not fits or count < 1:
-            yield (
-                f"{label}.length = {shown(length)}: must be a multiple of simulation.dx = {shown(dx)} (m); "
-                f"the nearest is {shown(max(count, 1) * dx)}"
-            )
 
 
 def _record_faults(output: Mapping[str, Any]) -> Iterator[str]:

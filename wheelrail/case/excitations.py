@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from wheelrail.case.fields import Section, quantity
+from wheelrail.case.irregularities import Corrugation, Dent, OutOfRound, RailJoint, WheelFlat
 
 __all__ = ["SPECTRUM_NAMES", "Excitation", "Measured", "Sinusoid", "Spectrum"]
 
@@ -73,4 +74,7 @@ class Spectrum(Section):
     )
 
 
-Excitation = Annotated[Sinusoid | Measured | Spectrum, Field(discriminator="type")]
+Excitation = Annotated[
+    Sinusoid | Measured | Spectrum | WheelFlat | RailJoint | Dent | Corrugation | OutOfRound,
+    Field(discriminator="type"),
+]

@@ -134,6 +134,12 @@ OutputName = Literal[
     "friction_method",
     "friction_solutions",
     "friction_force_spread",
+    "contact_y_wheel",
+    "contact_y_rail",
+    "contact_angle",
+    "rolling_radius",
+    "contact_points",
+    "missed_overlap",
 ]
 OUTPUT_NAMES: tuple[str, ...] = OutputName.__args__
 """Output ports that can be recorded."""

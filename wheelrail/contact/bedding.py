@@ -82,6 +82,16 @@ class WinklerBedding:
         return cls(**{name: value for name, value in meta.items() if name != "kind"})
 
     @property
+    def rows(self) -> int:
+        """One line along the rail."""
+        return 1
+
+    @property
+    def lateral_offsets(self) -> NDArray:
+        """Nothing across: shape (1,)."""
+        return np.zeros(1)
+
+    @property
     def memory(self) -> int:
         """Nothing is kept from step to step."""
         return 0

@@ -1,6 +1,7 @@
-"""Three-dimensional normal contact as the interaction uses it: crossed cylinders with roughness on a half-space.
+"""Three-dimensional normal contact as the interaction uses it: rough surfaces on a half-space.
 
-The undeformed distance is x^2 / (2 R_x) + y^2 / (2 R_y) - r(x), the roughness being the same across the width.
+The undeformed distance is x^2 / (2 R_x) + y^2 / (2 R_y) - r(x, y) of crossed cylinders; or that of profiles, which then
+comes with the heights.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,17 +31,32 @@ class HalfSpaceContact:
     ----------
     half_space : HalfSpace
     radius_x, radius_y : float
-        Relative radii in rolling and in lateral direction, m.
+        Relative radii in rolling and in lateral direction, m; of profiles at the reference shift, for messages alone.
+    profiles : bool
+        The heights hold the undeformed distance of profiles.
     """
 
     half_space: HalfSpace
     radius_x: float
     radius_y: float
+    profiles: bool = False
+
+    _OWN: ClassVar = ("radius_x", "radius_y", "profiles")
 
     @property
     def nodes(self) -> int:
         """Number of roughness nodes: one for each column of elements."""
         return self.half_space.mx
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of elements across."""
+        return self.half_space.my
+
+    @property
+    def lateral_offsets(self) -> NDArray:
+        """Positions of the rows, m."""
+        return self.half_space.y[:: self.half_space.mx].copy()
 
     @property
     def memory(self) -> int:
@@ -50,6 +66,8 @@ class HalfSpaceContact:
     @cached_property
     def _smooth(self) -> NDArray:
         grid = self.half_space
+        if self.profiles:
+            return np.zeros(grid.elements)
         return grid.x**2 / (2.0 * self.radius_x) + grid.y**2 / (2.0 * self.radius_y)
 
     def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
@@ -57,14 +75,15 @@ class HalfSpaceContact:
         grid = self.half_space
         names = ("mx", "my", "dx", "dy", "shear_modulus", "poisson_ratio")
         meta = {name: getattr(grid, name) for name in names}
-        return {"kind": "half-space", "radius_x": self.radius_x, "radius_y": self.radius_y, **meta}, {}
+        own = {name: getattr(self, name) for name in self._OWN}
+        return {"kind": "half-space", **own, **meta}, {}
 
     @classmethod
     def from_parts(cls, meta: Mapping[str, Any], arrays: Mapping[str, NDArray]) -> HalfSpaceContact:
         """Rebuild it from `to_parts`."""
         del arrays
-        grid = {name: value for name, value in meta.items() if name not in ("kind", "radius_x", "radius_y")}
-        return cls(HalfSpace(**grid), meta["radius_x"], meta["radius_y"])
+        grid = {name: value for name, value in meta.items() if name not in ("kind", *cls._OWN)}
+        return cls(HalfSpace(**grid), **{name: meta[name] for name in cls._OWN})
 
     def solve(
         self,
@@ -85,7 +104,7 @@ class HalfSpaceContact:
         """
         del guess
         grid = self.half_space
-        distance = self._smooth - np.tile(roughness, grid.my)
+        distance = self._smooth - (np.tile(roughness, grid.my) if roughness.ndim == 1 else roughness.ravel())
         nearby = None if memory is None else np.flatnonzero(memory > 0.0)
         state = solve_normal(NormalProblem(grid, distance, weight, compliance, rhs), nearby)
         contact = state.contact

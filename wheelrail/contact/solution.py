@@ -57,6 +57,16 @@ class NormalContact(Protocol):
         ...
 
     @property
+    def rows(self) -> int:
+        """Number of lines across at which it looks at the heights."""
+        ...
+
+    @property
+    def lateral_offsets(self) -> NDArray:
+        """Positions of these lines from the nominal contact point, m, shape (rows,)."""
+        ...
+
+    @property
     def memory(self) -> int:
         """Numbers that it keeps from step to step, as a warm start."""
         ...
@@ -79,8 +89,8 @@ class NormalContact(Protocol):
 
         Parameters
         ----------
-        roughness : ndarray, shape (nodes,)
-            Combined roughness in m.
+        roughness : ndarray, shape (nodes,) or (rows, nodes)
+            Combined heights in m; one row holds for all.
         weight, compliance, rhs, guess : float
             As `wheelrail.contact.newton.solve_approach` takes them.
         memory : ndarray, shape (memory,), optional

@@ -118,6 +118,16 @@ class HertzSpring:
         return self._smooth - self._riding_height(roughness)
 
     @property
+    def rows(self) -> int:
+        """One line along the rail."""
+        return 1
+
+    @property
+    def lateral_offsets(self) -> NDArray:
+        """Nothing across: shape (1,)."""
+        return np.zeros(1)
+
+    @property
     def memory(self) -> int:
         """Nothing is kept from step to step."""
         return 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -38,6 +38,7 @@ class Line:
     periodic: bool
     name: str
     kind: str = field(default="line", init=False)
+    across: ClassVar[bool] = False
     _window: np.ndarray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:

@@ -11,27 +11,37 @@ import numpy as np
 from wheelrail.errors import DataFileError, ParameterError
 from wheelrail.excitation.measured import read_measured_line
 from wheelrail.excitation.named_spectra import SpectrumTable, named_spectrum, read_spectrum
+from wheelrail.excitation.prepare_irregularities import (
+    prepare_corrugation,
+    prepare_dent,
+    prepare_out_of_round,
+    prepare_rail_joint,
+    prepare_wheel_flat,
+)
 from wheelrail.excitation.sources import Sinusoid, Source, SpectrumLine
 from wheelrail.excitation.synthesis import plan_harmonics, rail_repeat_length
+from wheelrail.excitation.view import ContactView
 
 __all__ = ["prepare_source"]
 
 _MOST_SAMPLES = 20_000_000
 
 
-def prepare_source(*, type: str, dx: float, wheel_radius: float | None, **keys: object) -> tuple[Source, list[str]]:
+def prepare_source(
+    *, type: str, dx: float, wheel_radius: float | None, view: ContactView, **keys: object
+) -> tuple[Source, list[str]]:
     """Make the source that an entry of a case describes.
 
     Parameters
     ----------
-    type : {"sinusoid", "measured", "spectrum"}
-        Kind of source, and with it the other keys:
-        sinusoid: amplitude, wavelength; measured: file (resolved path), on, beyond_end, optionally column;
-        spectrum: name or file, on, seed, optionally length (rail only).
+    type : {"sinusoid", "measured", "spectrum", "wheel-flat", "rail-joint", "dent", "corrugation", "out-of-round"}
+        Kind of source, and with it the other keys: those of the case file, a file as its resolved path.
     dx : float
         Grid spacing, m.
     wheel_radius : float or None
         Rolling radius, m; needed by sources on the wheel.
+    view : ContactView
+        How the contact model looks at large shapes.
     **keys
         Keys of the entry; a key that is None counts as left out.
 
@@ -53,22 +63,28 @@ def prepare_source(*, type: str, dx: float, wheel_radius: float | None, **keys: 
         "sinusoid": _sinusoid,
         "measured": _measured,
         "spectrum": _spectrum,
+        "wheel-flat": prepare_wheel_flat,
+        "rail-joint": prepare_rail_joint,
+        "dent": prepare_dent,
+        "corrugation": prepare_corrugation,
+        "out-of-round": prepare_out_of_round,
     }
     if type not in makers:
         raise ParameterError("type", type, f"allowed: {', '.join(makers)}")
     given = {key: value for key, value in keys.items() if value is not None}
     maker = makers[type]
     try:
-        inspect.signature(maker).bind(dx=dx, wheel_radius=wheel_radius, **given)
+        inspect.signature(maker).bind(dx=dx, wheel_radius=wheel_radius, view=view, **given)
     except TypeError as error:
         raise ParameterError("excitation", sorted(given), f"keys of type {type!r}: {error}") from None
-    return maker(dx=dx, wheel_radius=wheel_radius, **given)
+    return maker(dx=dx, wheel_radius=wheel_radius, view=view, **given)
 
 
 def _sinusoid(
     *,
     dx: float,
     wheel_radius: float | None,  # noqa: ARG001
+    view: ContactView,  # noqa: ARG001
     amplitude: float,
     wavelength: float,
 ) -> tuple[Source, list[str]]:
@@ -83,6 +99,7 @@ def _measured(
     *,
     dx: float,
     wheel_radius: float | None,
+    view: ContactView,  # noqa: ARG001
     file: str | Path,
     on: str,
     beyond_end: str = "stop",
@@ -95,6 +112,7 @@ def _spectrum(
     *,
     dx: float,
     wheel_radius: float | None,
+    view: ContactView,  # noqa: ARG001
     on: str,
     seed: int,
     name: str | None = None,

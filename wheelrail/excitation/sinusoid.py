@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -35,6 +35,7 @@ class Sinusoid:
     wavelength: float
     dx: float
     kind: str = field(default="sinusoid", init=False)
+    across: ClassVar[bool] = False
     _ratio: tuple[int, int] = field(init=False, repr=False)
     _table: np.ndarray | None = field(init=False, repr=False)
 

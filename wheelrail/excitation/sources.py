@@ -1,8 +1,9 @@
 """All sources of roughness on the grid x = i dx along the rail (numpy only: shipped in the FMU).
 
 Heights count positive outward from the material, on wheel and rail alike: they add to the indentation.
-Node i = 0 lies above a sleeper. All sources are immutable, and share ``add_window``, ``covered``, ``realise``,
-``to_parts`` and ``from_parts``.
+Node i = 0 lies above a sleeper. All sources are immutable, and share ``across``, ``covered``, ``realise``, ``to_parts``
+and ``from_parts``. Those that are the same all across the surface have ``add_window``, the others (``across``)
+``add_surface``.
 """
 
 from __future__ import annotations
@@ -13,19 +14,34 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelFileError
+from .corrugation import Corrugation
+from .irregularity import Irregularity
 from .line import Line
+from .out_of_round import OutOfRound
 from .sinusoid import Sinusoid
 from .spectrum_line import SpectrumLine
 
-__all__ = ["Line", "Sinusoid", "Source", "SpectrumLine", "source_from_parts"]
+__all__ = [
+    "Corrugation",
+    "Irregularity",
+    "Line",
+    "OutOfRound",
+    "Sinusoid",
+    "Source",
+    "SpectrumLine",
+    "source_from_parts",
+]
 
-Source = Sinusoid | Line | SpectrumLine
+Source = Sinusoid | Line | SpectrumLine | Irregularity | Corrugation | OutOfRound
 """Any source of roughness."""
 
-_KINDS: dict[str, type[Sinusoid] | type[Line] | type[SpectrumLine]] = {
+_KINDS: dict[str, Any] = {
     "sinusoid": Sinusoid,
     "line": Line,
     "spectrum": SpectrumLine,
+    "irregularity": Irregularity,
+    "corrugation": Corrugation,
+    "out-of-round": OutOfRound,
 }
 
 

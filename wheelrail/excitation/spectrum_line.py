@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -48,6 +48,7 @@ class SpectrumLine:
     on: str
     name: str
     kind: str = field(default="spectrum", init=False)
+    across: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "wavelengths", read_only(self.wavelengths))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from wheelrail.case import Case
 from wheelrail.contact.hertz import HertzContact
 from wheelrail.excitation.prepare import prepare_source
+from wheelrail.interaction.contacts import view_of
 
 __all__ = ["explain_excitation"]
 
@@ -20,7 +21,7 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
         keys = entry.model_dump(exclude_none=True)
         if "file" in keys:
             keys["file"] = case.data_path(keys["file"])
-        source, notes = prepare_source(dx=dx, wheel_radius=case.wheel.radius, **keys)
+        source, notes = prepare_source(dx=dx, wheel_radius=case.wheel.radius, view=view_of(case), **keys)
         if entry.type == "sinusoid":
             steps = entry.wavelength / dx
             lines.append(
@@ -31,9 +32,11 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
                 warnings.append(
                     f"excitation #{number}: only {steps:.3g} dx per wavelength; at least {_FEWEST_PER_WAVE} are advised"
                 )
-        else:
+        elif entry.type in ("measured", "spectrum"):
             name = getattr(entry, "name", None) or getattr(entry, "file", None)
             lines.append(f"{number}. {entry.type}: {name}, on the {entry.on}")
+        else:
+            lines.append(f"{number}. {entry.type}")
         covered = source.covered()
         if covered is not None:
             first, last = covered

@@ -5,20 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..case import Case
-from ..contact.bedding import WinklerBedding
-from ..contact.half_space import HalfSpace
-from ..contact.half_space_contact import HalfSpaceContact
-from ..contact.hertz import HertzContact, hertz_contact
+from ..contact.geometry import ConstantGeometry
 from ..contact.parts import tangential_model
 from ..contact.solution import NormalContact
-from ..contact.spring import HertzSpring, averaging_weights
 from ..contact.tangential_models import TangentialModel
-from ..errors import CaseError
 from ..excitation.prepare import prepare_source
+from .contacts import contact_of, curvatures_of, geometry_of, hertz_of, view_of
 from .friction import slip_friction_of, static_friction_of
 from .inputs import Inputs
 from .model import Model
@@ -27,26 +22,6 @@ from .tracks import memory_of, track_of, track_response
 from .wheels import wheel_of, wheel_responses
 
 __all__ = ["build_model", "curvatures_of", "hertz_of", "memory_of", "track_of", "wheel_of"]
-
-
-def curvatures_of(case: Case) -> tuple[float, float]:
-    """Return the sums of wheel's and rail's curvatures in rolling and in lateral direction, 1/m."""
-    transverse = case.contact.wheel_transverse_radius
-    lateral = 1.0 / case.contact.rail_radius + (0.0 if transverse is None else 1.0 / transverse)
-    return 1.0 / case.wheel.radius, lateral
-
-
-def hertz_of(case: Case) -> HertzContact:
-    """Solve Hertz contact of a case's geometry under its preload."""
-    contact = case.contact
-    curvature_x, curvature_y = curvatures_of(case)
-    return hertz_contact(
-        curvature_x=curvature_x,
-        curvature_y=curvature_y,
-        youngs_modulus=contact.youngs_modulus,
-        poisson_ratio=contact.poisson_ratio,
-        load=case.load.preload,
-    )
 
 
 def build_model(case: Case, progress: Callable[[float], None] | None = None) -> Model:
@@ -85,15 +60,16 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
         keys = entry.model_dump(exclude_none=True)
         if "file" in keys:
             keys["file"] = case.data_path(keys["file"])
-        source, remarks = prepare_source(dx=simulation.dx, wheel_radius=case.wheel.radius, **keys)
+        source, remarks = prepare_source(dx=simulation.dx, wheel_radius=case.wheel.radius, view=view_of(case), **keys)
         sources.append(source)
         notes += remarks
     report["excitation"] = notes
+    geometry = geometry_of(case)
     parameters = Parameters(
         speed=simulation.speed,
         friction_coefficient=static_friction_of(case),
         start_position=simulation.start_position,
-        lateral_position=0.0,
+        lateral_position=geometry.y_wheel if isinstance(geometry, ConstantGeometry) else 0.0,
         coupling=case.load.coupling,
         balance=True,
         input_extrapolation="hold",
@@ -101,7 +77,7 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
         random_seed=OWN_SEEDS,
         record=False,
     )
-    contact = _contact_of(case)
+    contact = contact_of(case)
     return Model(
         title=case.title or "",
         case=case.to_toml(),
@@ -111,6 +87,7 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
         wheel=wheel,
         held_wheel=held_wheel,
         track=track,
+        geometry=geometry,
         contact=contact,
         tangential=_tangential_of(case, contact),
         sources=tuple(sources),
@@ -141,50 +118,3 @@ def _tangential_of(case: Case, normal: NormalContact) -> TangentialModel | None:
     if friction is not None:
         meta["friction"] = friction.to_parts()
     return tangential_model(meta, normal)
-
-
-def _contact_of(case: Case) -> NormalContact:
-    contact, dx = case.contact, case.simulation.dx
-    hertz = hertz_of(case)
-    if contact.normal == "half-space":
-        grid = HalfSpace(
-            mx=round(contact.length / dx),
-            my=round(contact.width / contact.dy),
-            dx=dx,
-            dy=contact.dy,
-            shear_modulus=contact.youngs_modulus / (2.0 * (1.0 + contact.poisson_ratio)),
-            poisson_ratio=contact.poisson_ratio,
-        )
-        curvature_x, curvature_y = curvatures_of(case)
-        return HalfSpaceContact(grid, 1.0 / curvature_x, 1.0 / curvature_y)
-    nodes = 1 if contact.length is None else round(contact.length / dx)
-    calibration = {
-        "load": hertz.load,
-        "semi_axis_x": hertz.semi_axis_x,
-        "semi_axis_y": hertz.semi_axis_y,
-        "approach": hertz.approach,
-        "dx": dx,
-        "nodes": nodes,
-    }
-    if contact.normal == "winkler":
-        return WinklerBedding.from_hertz(**calibration)
-    cube_root = hertz.load ** (1.0 / 3.0)
-    weights, bedding = np.zeros(nodes), None
-    weights[nodes // 2] = 1.0
-    if contact.prefilter != "none" and 0.5 * (nodes - 1) * dx < hertz.semi_axis_x:
-        raise CaseError(
-            "contact.length",
-            [f"the prefilter needs at least the nominal contact length {2e3 * hertz.semi_axis_x:.3g} mm and one dx"],
-        )
-    if contact.prefilter == "average":
-        weights = averaging_weights(half_length=hertz.semi_axis_x, dx=dx, nodes=nodes)
-    elif contact.prefilter == "winkler":
-        bedding = WinklerBedding.from_hertz(**calibration)
-    return HertzSpring(
-        constant=hertz.constant,
-        axis_constants=(hertz.semi_axis_x / cube_root, hertz.semi_axis_y / cube_root),
-        nodes=nodes,
-        weights=weights,
-        bedding=bedding,
-        preload=hertz.load,
-    )

@@ -30,6 +30,8 @@ from .state import (
     FORCE_Y,
     ITERATIONS,
     METHOD,
+    MISSED,
+    POINTS,
     RESIDUAL,
     RESULTS,
     SOLUTIONS,
@@ -57,15 +59,17 @@ LARGEST = {
     "friction_method": METHOD,
     "friction_solutions": SOLUTIONS,
     "friction_force_spread": SPREAD,
+    "contact_points": POINTS,
+    "missed_overlap": MISSED,
 }
 """Outputs that are the largest value within the communication step, and their place in the state."""
-COUNTS = ("solver_iterations", "friction_method", "friction_solutions")
+COUNTS = ("solver_iterations", "friction_method", "friction_solutions", "contact_points")
 """Those that are whole numbers."""
 OUTPUT_NAMES = (*RESULTS, *_STEP_RESULTS, *LARGEST, "in_contact", "distance")
 
 _MEANS = {"force_x_mean": 0, "force_y_mean": 1, "force_z_mean": 2}
 
-_MAGIC = b"WRSTATE4"
+_MAGIC = b"WRSTATE5"
 _CHECKSUM_BYTES, _FINGERPRINT_BYTES = 16, 16
 
 

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact.geometry import ConstantGeometry, ContactGeometry
 from ..contact.solution import NormalContact
 from ..contact.tangential_models import TangentialModel
 from ..errors import ParameterError
@@ -28,8 +29,17 @@ _SPEED_TOLERANCE = 1e-9
 class Source(Protocol):
     """A source of combined roughness on the grid x = i dx."""
 
+    @property
+    def across(self) -> bool:
+        """Whether it differs across the surface."""
+        ...
+
     def add_window(self, first: int, out: NDArray, /) -> None:
-        """Add r(first dx), r((first + 1) dx), ... in m to ``out``."""
+        """Add r(first dx), r((first + 1) dx), ... in m to ``out``; of a source that is the same all across."""
+        ...
+
+    def add_surface(self, first: int, y_wheel: NDArray, y_rail: NDArray, out: NDArray, /) -> None:
+        """Add the same at several positions across (m) to ``out``, shape (rows, nodes); of one that is not."""
         ...
 
     def realise(self, *, dx: float, seed_override: int | None) -> Source:
@@ -60,6 +70,8 @@ class Model:
         What remains of it in coupling by displacement.
     track : TrackResponse or None
         Moving Green's functions of one bay; None for a rigid track.
+    geometry : ContactGeometry
+        Where wheel and rail touch.
     contact : NormalContact
     tangential : TangentialModel or None
         None for a run in vertical direction only. With one, wheel and track may have three directions; their first
@@ -79,6 +91,7 @@ class Model:
     wheel: WheelResponse | None
     held_wheel: WheelResponse | None
     track: TrackResponse | None
+    geometry: ContactGeometry
     contact: NormalContact
     tangential: TangentialModel | None
     sources: tuple[Source, ...]
@@ -98,6 +111,13 @@ class Model:
     def active_wheel(self) -> WheelResponse | None:
         """The wheel's Green's functions in the chosen coupling."""
         return self.wheel if self.parameters.coupling == "load" else self.held_wheel
+
+    @cached_property
+    def active_geometry(self) -> ContactGeometry:
+        """Geometry with the chosen lateral position; profiles decide for themselves where they touch."""
+        if isinstance(self.geometry, ConstantGeometry):
+            return replace(self.geometry, y_wheel=self.parameters.lateral_position)
+        return self.geometry
 
     @cached_property
     def wheel_first(self) -> float:
@@ -129,6 +149,11 @@ class Model:
         override = None if seed == OWN_SEEDS else seed
         return tuple(source.realise(dx=self.dx, seed_override=override) for source in self.sources)
 
+    @property
+    def lateral(self) -> bool:
+        """Whether the lateral position of the wheel on the rail makes a difference."""
+        return self.geometry.shaped or any(source.across for source in self.sources)
+
     @cached_property
     def fingerprint(self) -> bytes:
         """Hash of all that shapes a run apart from the parameters; 16 bytes."""
@@ -142,6 +167,7 @@ class Model:
         if self.track is not None:
             digest.update(repr(self.track.values.shape).encode())
             digest.update(self.track.values.data)
+        _update(digest, *self.geometry.to_parts())
         for source in self.sources:
             _update(digest, *source.to_parts())
         return digest.digest()

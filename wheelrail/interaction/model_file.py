@@ -15,13 +15,14 @@ from ..greens.parts import response_from_parts, response_to_parts
 from ..greens.protocol import WheelResponse
 from ..greens.track_response import TrackResponse
 from ..numerics.array_file import ArrayFileError, read_arrays, write_arrays
+from .geometry_parts import geometry_from_parts
 from .inputs import Inputs
 from .model import Model
 from .parameters import Parameters
 
 __all__ = ["FORMAT", "load_model", "save_model"]
 
-FORMAT = 2
+FORMAT = 3
 
 
 def save_model(model: Model, path: str | os.PathLike[str]) -> None:
@@ -52,6 +53,8 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
     header["track"] = model.track is not None
     if model.track is not None:
         arrays["track"] = model.track.values
+    header["geometry"], geometry_arrays = model.geometry.to_parts()
+    arrays |= {f"geometry.{name}": array for name, array in geometry_arrays.items()}
     header["contact"], contact_arrays = model.contact.to_parts()
     arrays |= {f"contact.{name}": array for name, array in contact_arrays.items()}
     header["tangential"] = {"kind": "none"} if model.tangential is None else model.tangential.to_parts()
@@ -86,6 +89,8 @@ def load_model(path: str | os.PathLike[str]) -> Model:
     for number, entry in enumerate(header["sources"]):
         parts = {name: arrays[f"source{number}.{name}"] for name in entry["arrays"]}
         sources.append(source_from_parts(entry["meta"], parts))
+    prefix = "geometry."
+    geometry_arrays = {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
     contact_arrays = {name[8:]: array for name, array in arrays.items() if name.startswith("contact.")}
     contact = contact_from_parts(header["contact"], contact_arrays)
     return Model(
@@ -97,6 +102,7 @@ def load_model(path: str | os.PathLike[str]) -> Model:
         wheel=wheels["wheel"],
         held_wheel=wheels["held_wheel"],
         track=TrackResponse(arrays["track"]) if header["track"] else None,
+        geometry=geometry_from_parts(header["geometry"], geometry_arrays),
         contact=contact,
         tangential=tangential_model(header["tangential"], contact),
         sources=tuple(sources),

@@ -24,7 +24,8 @@ from ..greens.protocol import FreeBodyError, WheelResponse, compliance_matrix, f
 from .inputs import Inputs
 from .model import Model
 from .state import GUIDE_X, GUIDE_Y, HEAD, OFFSET, RAIL, RAIL_X, RAIL_Y, STEP, WHEEL, WHEEL_X, WHEEL_Y, State
-from .step import creepages_of, roughness_window, store_solution, store_tangential
+from .step import creepages_of, heights_at, store_solution, store_tangential
+from .surfaces import Surfaces, total_shift
 
 __all__ = ["height_for_load", "start"]
 
@@ -53,13 +54,13 @@ def start(model: Model, inputs: Inputs) -> State:
     state = State(model)
     block = state.block
     block[STEP] = block[HEAD] = 0.0
-    roughness = roughness_window(model, state, model.start_index)
+    heights = heights_at(model, state, inputs, model.start_index)
     rail_compliance = _rail_compliance(model)
     if model.parameters.coupling == "load":
-        solution = model.contact.solve(roughness, weight=0.0, compliance=1.0, rhs=inputs.wheel_force_z, guess=1e-4)
+        solution = model.contact.solve(heights, weight=0.0, compliance=1.0, rhs=inputs.wheel_force_z, guess=1e-4)
         tangential = _steady_rolling(model, solution, inputs)
     else:
-        solution, tangential = _under_height(model, inputs, roughness, rail_compliance)
+        solution, tangential = _under_height(model, inputs, heights, rail_compliance)
     _check(model, inputs, solution)
     force, drive = state.force, state.drive
     force[:] = _forces(solution, tangential)
@@ -96,8 +97,9 @@ def height_for_load(model: Model, inputs: Inputs) -> float:
     inputs : Inputs
         ``wheel_force_z``, and the creepages.
     """
-    smooth = np.zeros(model.contact.nodes)
-    solution = model.contact.solve(smooth, weight=0.0, compliance=1.0, rhs=inputs.wheel_force_z, guess=1e-4)
+    surfaces = Surfaces(model)
+    surfaces.move(model, total_shift(model, inputs))
+    solution = model.contact.solve(surfaces.smooth(), weight=0.0, compliance=1.0, rhs=inputs.wheel_force_z, guess=1e-4)
     compliance = _rail_compliance(model) + _wheel_compliance(model)
     return solution.approach + float(compliance[2] @ _forces(solution, _steady_rolling(model, solution, inputs)))
 
@@ -135,14 +137,14 @@ def _steady_rolling(model: Model, solution: NormalSolution, inputs: Inputs) -> T
 
 
 def _under_height(
-    model: Model, inputs: Inputs, roughness: NDArray, rail_compliance: NDArray
+    model: Model, inputs: Inputs, heights: NDArray, rail_compliance: NDArray
 ) -> tuple[NormalSolution, TangentialSolution | None]:
     """Find normal and tangential contact that are in equilibrium under a held wheel."""
     compliance = rail_compliance + _wheel_compliance(model)
     given = 0.0  # how far the tangential forces lower the approach
     for _ in range(_MOST_ROUNDS):
         solution = model.contact.solve(
-            roughness, weight=1.0, compliance=float(compliance[2, 2]), rhs=inputs.wheel_z - given, guess=1e-4
+            heights, weight=1.0, compliance=float(compliance[2, 2]), rhs=inputs.wheel_z - given, guess=1e-4
         )
         tangential = _steady_rolling(model, solution, inputs)
         lowered = float(compliance[2, :2] @ _forces(solution, tangential)[:2])

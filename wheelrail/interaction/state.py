@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import StateError
 from ..greens.track_response import TrackResponse
 from .model import Model
+from .surfaces import Surfaces
 
 __all__ = ["RESULTS", "State"]
 
@@ -24,7 +25,9 @@ WHEEL_X, WHEEL_Y, RAIL_X, RAIL_Y = range(19, 23)
 GUIDE_X, GUIDE_Y = 23, 24
 # What found the friction coefficients, how many solutions there are, and how far their forces differ.
 METHOD, SOLUTIONS, SPREAD = 25, 26, 27
-SCALARS = 28
+# Where wheel and rail touch, and what of it the contact model does not see.
+Y_WHEEL, Y_RAIL, ANGLE, ROLLING_RADIUS, POINTS, MISSED = range(28, 34)
+SCALARS = 34
 
 RESULTS = {
     "force_z": FORCE,
@@ -45,6 +48,10 @@ RESULTS = {
     "moment_spin": MOMENT,
     "slip_fraction": SLIP,
     "friction_power": POWER,
+    "contact_y_wheel": Y_WHEEL,
+    "contact_y_rail": Y_RAIL,
+    "contact_angle": ANGLE,
+    "rolling_radius": ROLLING_RADIUS,
 }
 
 
@@ -67,6 +74,8 @@ class State:
         Work space: contact force F on the rail and what drives the wheel, P - F; N.
     on_rail, on_wheel : ndarray, shape (d,)
         Views of them in the directions that track and wheel have.
+    surfaces : Surfaces
+        Work space: what the contact sees of wheel and rail.
     """
 
     __slots__ = (
@@ -78,9 +87,9 @@ class State:
         "normal",
         "on_rail",
         "on_wheel",
+        "surfaces",
         "tangential",
         "wheel",
-        "window",
     )
 
     def __init__(self, model: Model, block: NDArray | None = None) -> None:
@@ -99,7 +108,7 @@ class State:
         self.wheel, self.normal, self.tangential, future = (block[first:last] for first, last in pairwise(ends))
         self.future = future.reshape(directions, 2 * samples)
         # Work space, not part of the state: it is overwritten before it is read.
-        self.window = np.zeros(model.contact.nodes)
+        self.surfaces = Surfaces(model)
         self.force, self.drive = np.zeros(3), np.zeros(3)
         self.on_rail, self.on_wheel = self.force[3 - directions :], self.drive[3 - wheel_directions :]
         self._pushed = np.empty(directions * samples)

@@ -31,6 +31,7 @@ from ..errors import WheelrailError
 from .inputs import Inputs
 from .model import Model
 from .state import (
+    ANGLE,
     APPROACH,
     AREA,
     FORCE,
@@ -42,14 +43,17 @@ from .state import (
     ITERATIONS,
     LENGTH,
     METHOD,
+    MISSED,
     MOMENT,
     OFFSET,
+    POINTS,
     POWER,
     PRESSURE,
     RAIL,
     RAIL_X,
     RAIL_Y,
     RESIDUAL,
+    ROLLING_RADIUS,
     SLIP,
     SOLUTIONS,
     SPREAD,
@@ -59,22 +63,19 @@ from .state import (
     WHEEL_X,
     WHEEL_Y,
     WIDTH,
+    Y_RAIL,
+    Y_WHEEL,
     State,
 )
+from .surfaces import total_shift
 
 __all__ = ["step"]
 
 
-def roughness_window(model: Model, state: State, index: int) -> NDArray:
-    """Evaluate the combined roughness at the contact's nodes around ``index``, in m; shape (nodes,)."""
-    window = state.window
-    window.fill(0.0)
-    first = index - len(window) // 2
-    for line in model.lines:
-        line.add_window(first, window)
-    if model.parameters.roughness_scale != 1.0:
-        window *= model.parameters.roughness_scale
-    return window
+def heights_at(model: Model, state: State, inputs: Inputs, index: int) -> NDArray:
+    """Evaluate what the contact sees around grid index ``index``, m; see `wheelrail.interaction.surfaces`."""
+    state.surfaces.move(model, total_shift(model, inputs))
+    return state.surfaces.heights(model, index)
 
 
 def creepages_of(inputs: Inputs) -> Creepages:
@@ -104,6 +105,11 @@ def store_tangential(model: Model, state: State, solution: TangentialSolution | 
 def store_solution(state: State, solution: NormalSolution) -> None:
     """Put the results of the normal contact at their place in the state."""
     block = state.block
+    place = state.surfaces.place
+    block[Y_WHEEL], block[Y_RAIL], block[ANGLE], block[ROLLING_RADIUS] = place[:4]
+    block[POINTS], block[MISSED] = 1.0, 0.0
+    if place.others:
+        block[POINTS], block[MISSED] = state.surfaces.other_contacts(solution.approach)
     if solution.field is not None:
         state.normal[:] = solution.field.pressure
     block[FORCE] = solution.force
@@ -136,7 +142,7 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     block = state.block
     number = int(block[STEP]) + 1
     index = model.start_index + number
-    roughness = roughness_window(model, state, index)
+    heights = heights_at(model, state, inputs, index)
     wheel, track = model.active_wheel, model.track
     rail_x = rail_y = rail_known = rail_first = 0.0
     if track is not None:
@@ -151,12 +157,10 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     offset = float(block[OFFSET]) if by_load else inputs.wheel_z
     guess = float(block[APPROACH])
     if by_load and wheel is None:  # a wheel without dynamics: the contact force is the load
-        solution = model.contact.solve(
-            roughness, weight=0.0, compliance=1.0, rhs=load, guess=guess, memory=state.normal
-        )
+        solution = model.contact.solve(heights, weight=0.0, compliance=1.0, rhs=load, guess=guess, memory=state.normal)
     else:
         solution = model.contact.solve(
-            roughness,
+            heights,
             weight=1.0,
             compliance=wheel_first + rail_first,
             rhs=offset + wheel_known + wheel_first * load - rail_known,

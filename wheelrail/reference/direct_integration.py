@@ -1,6 +1,6 @@
-"""Direct time integration of track, wheel and Hertz spring: an independent check of the Green's functions.
+"""Direct time integration of track, wheel and contact: an independent check of the Green's functions.
 
-The finite element track, the wheel and the contact spring are integrated as one system by Newmark's method (average
+The finite element track, the wheel and the contact are integrated as one system by Newmark's method (average
 acceleration), the contact force moving along the rail through the elements' shape functions. Nothing of the moving
 Green's functions, their discretisation or the interaction step is used here.
 
@@ -19,7 +19,10 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 from ..track.discrete import DiscreteTrack
 from ..wheel.rigid import RigidWheel
 
-__all__ = ["InteractionHistory", "integrate_interaction", "integrate_moving_force"]
+__all__ = ["InteractionHistory", "hertz_law", "integrate_interaction", "integrate_moving_force"]
+
+ContactLaw = Callable[[float, float], tuple[float, float]]
+"""Force in N and stiffness in N/m at place x and approach d, both in m; the force must not fall with d."""
 
 HALF_BANDWIDTH = 4  # each supported node is followed by its sleeper
 
@@ -178,19 +181,36 @@ def integrate_moving_force(
     return time, displacement
 
 
+def hertz_law(constant: float, roughness: Callable[[float], float]) -> ContactLaw:
+    """Make the law of a Hertz spring F = C_H (d + r(x))^1.5.
+
+    Parameters
+    ----------
+    constant : float
+        C_H in N/m^1.5.
+    roughness : callable
+        Combined roughness r(x) in m, adding to the indentation.
+    """
+
+    def law(x: float, approach: float) -> tuple[float, float]:
+        depth = max(approach + roughness(x), 0.0)
+        return constant * depth**1.5, 1.5 * constant * depth**0.5
+
+    return law
+
+
 def integrate_interaction(
     track: DiscreteTrack,
     wheel: RigidWheel,
     *,
-    hertz_constant: float,
+    law: ContactLaw,
     preload: float,
     speed: float,
     start: float,
-    roughness: Callable[[float], float],
     dt: float,
     steps: int,
 ) -> InteractionHistory:
-    """Wheel rolling over the track with a Hertz spring between them.
+    """Roll a wheel over the track.
 
     The run starts from static equilibrium under the preload at ``start``, all at rest.
 
@@ -198,14 +218,11 @@ def integrate_interaction(
     ----------
     track : DiscreteTrack
     wheel : RigidWheel
-    hertz_constant : float
-        C_H of F = C_H d^1.5 in N/m^1.5.
+    law : ContactLaw
     preload : float
         In N.
     speed, start : float
         m/s, and m from the middle sleeper.
-    roughness : callable
-        Combined roughness r(x) in m, adding to the indentation.
     dt : float
         Time step in s.
     steps : int
@@ -227,25 +244,18 @@ def integrate_interaction(
     rows, weights = system.point(start)
     rail_displacement[0] = weights @ system.u[rows] + preload * system.local(start)
     # The wheel's displacement counts from its equilibrium under the preload.
-    offset = (preload / hertz_constant) ** (2.0 / 3.0) + rail_displacement[0] - roughness(start)
-    approach = (preload / hertz_constant) ** (2.0 / 3.0)
+    approach, _ = _solve(lambda d: _difference(law(start, d), preload), 1e-4)
+    offset = approach + rail_displacement[0]
     for n in range(1, steps + 1):
         x = start + speed * time[n]
         rail_free, rail_unit = system.predict(x)
         rhs = M @ (4.0 / dt**2 * u + 4.0 / dt * v + a) + C @ (2.0 / dt * u + v)
         rhs[-1] += preload
         wheel_free, wheel_unit = effective @ rhs, effective[:, -1]
-        free = offset + wheel_free[-1] - rail_free + roughness(x)
+        free = offset + wheel_free[-1] - rail_free
         compliance = rail_unit + wheel_unit[-1]
-        for _ in range(60):  # Newton on d + compliance F(d) = free, convex and increasing
-            root = max(approach, 0.0) ** 0.5
-            change = (approach + compliance * hertz_constant * root**3 - free) / (
-                1.0 + 1.5 * compliance * hertz_constant * root
-            )
-            approach -= change
-            if abs(change) < 1e-16 + 1e-13 * abs(approach):
-                break
-        value = hertz_constant * max(approach, 0.0) ** 1.5
+        approach, _ = _solve(lambda d, x=x, f=free, c=compliance: _coupled(law(x, d), d, f, c), approach)
+        value = law(x, approach)[0]
         system.accept(value)
         new = wheel_free - value * wheel_unit
         acceleration = 4.0 / dt**2 * (new - u) - 4.0 / dt * v - a
@@ -254,3 +264,33 @@ def integrate_interaction(
         force[n], wheel_displacement[n] = value, u[-1]
         rail_displacement[n] = rail_free + rail_unit * value
     return InteractionHistory(time, force, wheel_displacement, rail_displacement)
+
+
+def _difference(contact: tuple[float, float], load: float) -> tuple[float, float]:
+    return contact[0] - load, contact[1]
+
+
+def _coupled(contact: tuple[float, float], d: float, free: float, compliance: float) -> tuple[float, float]:
+    """Return d + compliance F(d) - free, and its derivative."""
+    return d + compliance * contact[0] - free, 1.0 + compliance * contact[1]
+
+
+def _solve(function: Callable[[float], tuple[float, float]], guess: float) -> tuple[float, float]:
+    """Root of an increasing function by Newton's method, by bisection where that leaves the bracket."""
+    low, high, d = -np.inf, np.inf, guess
+    value = np.inf
+    for _ in range(200):
+        value, slope = function(d)
+        if value <= 0.0:
+            low = d
+        else:
+            high = d
+        if value == 0.0:
+            break
+        new = d - value / slope if slope > 0.0 else d - np.sign(value) * 1e-4
+        if not low < new < high:
+            new = 0.5 * (low + high) if np.isfinite(low + high) else d - np.sign(value) * 1e-4
+        change, d = new - d, new
+        if abs(change) < 1e-16 + 1e-13 * abs(d):
+            break
+    return float(d), float(value)

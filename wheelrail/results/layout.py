@@ -41,8 +41,20 @@ OUTPUTS: dict[str, tuple[str, str]] = {
     "friction_method": ("1", "what found the friction: 0 given, 1 Newton, 2 Broyden, 3 direct iteration"),
     "friction_solutions": ("1", "solutions of the step that were found, 0 if not looked for"),
     "friction_force_spread": ("N", "largest difference of their tangential forces"),
+    "contact_y_wheel": ("m", "lateral position of the contact on the wheel from the tape circle"),
+    "contact_y_rail": ("m", "lateral position of the contact on the rail from its axis"),
+    "contact_angle": ("rad", "contact angle"),
+    "rolling_radius": ("m", "radius of the wheel at the contact"),
+    "contact_points": ("1", "places where the undeformed bodies overlap"),
+    "missed_overlap": ("m", "overlap at a place outside of the potential contact area"),
 }
 """Unit (as UDUNITS writes it) and long name of every output that can be recorded."""
 
-TYPES = {"in_contact": "i1", "solver_iterations": "i4", "friction_method": "i1", "friction_solutions": "i2"}
+TYPES = {
+    "in_contact": "i1",
+    "solver_iterations": "i4",
+    "friction_method": "i1",
+    "friction_solutions": "i2",
+    "contact_points": "i2",
+}
 """netCDF types of the outputs that are no floating-point numbers."""

@@ -86,7 +86,10 @@ SINGLE = [
     ({"load.preload": None}, 'load.preload: missing; give it (N) or name a preset (preset = "thesis-65kN")'),
     ({"load.coupling": None}, "load.coupling: missing; give one of: load, displacement"),
     ({"contact.normal": None}, "contact.normal: missing; give one of: hertz, winkler, half-space"),
-    ({"excitation.1.type": None}, "excitation #2.type: missing; give one of: sinusoid, measured, spectrum"),
+    (
+        {"excitation.1.type": None},
+        "excitation #2.type: missing; give one of: sinusoid, measured, spectrum, wheel-flat, rail-joint, dent, corrugation, out-of-round",
+    ),
     (
         {"simulation": None},
         "simulation: missing; add a table [simulation] with speed, dx, duration, start_position",
@@ -121,8 +124,8 @@ SINGLE = [
         "an FMU starts with these values",
     ),
     (
-        {"excitation": [{"type": "wheel-flat", "depth": 1e-3, "length": 0.1, "shape": "new"}]},
-        f'excitation #1.type = "wheel-flat": {VERSION_WORDS}; available: sinusoid, measured, spectrum',
+        {"excitation": [{"type": "wheel-flat", "depth": 1e-3, "length": 0.1, "shape": "oval", "angle": 0.0}]},
+        'excitation #1.shape = "oval": must be one of: new, rounded, measured',
     ),
     ({"excitation.0.coherence": 1.0}, f"excitation #1.coherence: {VERSION_WORDS}; leave it out"),
     ({"contact.wheel_profile": "s1002"}, f"contact.wheel_profile: {VERSION_WORDS}; leave it out"),

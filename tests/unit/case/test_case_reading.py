@@ -286,7 +286,7 @@ def test_preset_names_are_unique():
 
 
 def test_output_names():
-    assert len(OUTPUT_NAMES) == len(set(OUTPUT_NAMES)) == 30
+    assert len(OUTPUT_NAMES) == len(set(OUTPUT_NAMES)) == 36
     data = minimal()
     data["output"] = {"record": list(OUTPUT_NAMES)}
     assert case_from_dict(data).output.record == OUTPUT_NAMES

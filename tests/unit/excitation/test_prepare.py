@@ -4,8 +4,9 @@ import pytest
 from wheelrail.errors import DataFileError, ParameterError
 from wheelrail.excitation.prepare import prepare_source
 from wheelrail.excitation.sources import Line, Sinusoid, SpectrumLine
+from wheelrail.excitation.view import ContactView
 
-COMMON = {"dx": 1e-3, "wheel_radius": 0.46}
+COMMON = {"dx": 1e-3, "wheel_radius": 0.46, "view": ContactView(radius=0.46, stretch=1.0, trajectory=False)}
 
 
 def test_sinusoid():

@@ -82,8 +82,8 @@ def test_missing_and_foreign_files(small_model, tmp_path):
     path = tmp_path / "model"
     save_model(small_model(), path)
     header, arrays, _ = read_arrays(path)
-    write_arrays(path, {**header, "format": 3}, arrays)
-    with pytest.raises(ModelFileError, match="format 3, this version reads format 2"):
+    write_arrays(path, {**header, "format": 4}, arrays)
+    with pytest.raises(ModelFileError, match="format 4, this version reads format 3"):
         load_model(path)
     write_arrays(path, {"key": "a cache file"}, arrays)
     with pytest.raises(ModelFileError, match="format None"):
