@@ -39,6 +39,7 @@ from .state import (
     State,
 )
 from .step import step
+from .surfaces import missed_contact
 
 __all__ = ["OUTPUT_NAMES", "RESIDUAL_LIMIT", "CoSimulation"]
 
@@ -101,7 +102,7 @@ class CoSimulation:
         self._inputs = self.model.start_inputs
         self._state: State | None = None
         self._stale = True
-        self._remarked = False
+        self._remarked = self._missed = False
         self._backup = np.empty(0)
         self._clear_clock()
 
@@ -185,6 +186,7 @@ class CoSimulation:
         self._largest = self._smallest = float(state.block[FORCE])
         self._worst = [float(state.block[place]) for place in LARGEST.values()]
         self._check_residual(float(state.block[RESIDUAL]))
+        self._check_missed(float(state.block[MISSED]))
         if self.model.tangential is not None and not self._remarked:
             self.warnings += self.model.tangential.remarks
             self._remarked = True  # not again for every input that is set before the first step
@@ -265,6 +267,7 @@ class CoSimulation:
         self._largest, self._smallest = largest, smallest
         self._worst = worst
         self._check_residual(worst[places.index(RESIDUAL)])
+        self._check_missed(worst[places.index(MISSED)])
 
     def _slopes(self) -> tuple[float, ...] | None:
         """Slopes of the inputs over the last communication step, for linear extrapolation."""
@@ -281,6 +284,11 @@ class CoSimulation:
                 f"above {RESIDUAL_LIMIT:g}; the force of this communication step is not reliable"
                 + (" (a pulling load has no equilibrium)" if self._inputs.wheel_force_z < 0.0 else "")
             )
+
+    def _check_missed(self, overlap: float) -> None:
+        if overlap > 0.0 and not self._missed:
+            self.warnings.append(missed_contact(overlap, self.steps))
+        self._missed = overlap > 0.0  # not again for every communication step that it lasts
 
     def output(self, name: str) -> float | int | bool:
         """Value of an output port at the present communication point.

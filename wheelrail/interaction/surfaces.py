@@ -13,7 +13,15 @@ from ..contact.geometry import Place
 from .inputs import Inputs
 from .model import Model
 
-__all__ = ["Surfaces", "total_shift"]
+__all__ = ["Surfaces", "missed_contact", "total_shift"]
+
+
+def missed_contact(overlap: float, step: int) -> str:
+    """Word the message about a contact that is not computed; overlap in m."""
+    return (
+        f"wheel and rail also touch outside of the potential contact area (step {step}, overlap {1e6 * overlap:.3g} um "
+        "without deformation): what this second contact bears is left out; a wider contact.width may take it in"
+    )
 
 
 def total_shift(model: Model, inputs: Inputs) -> float:
