@@ -25,7 +25,9 @@ FORBIDDEN_EVERYWHERE_BELOW = {"analysis", "study", "cli"}
 CORE = {"numerics", "wheel", "track", "excitation", "contact", "greens", "interaction"}
 
 # Of the interaction, what turns a case into a model.
-PREPARATION = {f"interaction/{name}.py" for name in ("build", "contacts", "friction", "tracks", "wheel_sources", "wheels")}
+PREPARATION = {
+    f"interaction/{name}.py" for name in ("build", "contacts", "friction", "tracks", "wheel_sources", "wheels")
+}
 
 # Shipped inside the FMU.
 RUNTIME = [
@@ -37,7 +39,10 @@ RUNTIME = [
         for name in ("cosimulation", "inputs", "model", "model_file", "parameters", "start", "state", "step")
     ),
     *(f"interaction/{name}.py" for name in ("geometry_parts", "surfaces")),
-    *(f"contact/{name}.py" for name in ("bedding", "geometry", "newton", "parts", "solution", "spring", "tangential_models")),
+    *(
+        f"contact/{name}.py"
+        for name in ("bedding", "geometry", "newton", "parts", "solution", "spring", "tangential_models")
+    ),
     *(
         f"contact/{name}.py"
         for name in ("influence", "half_space", "half_space_contact", "normal", "rolling", "tangential")
@@ -71,6 +76,7 @@ RUNTIME = [
     ),
     *(f"excitation/{name}.py" for name in ("line", "sampled_heights", "sinusoid", "sources", "spectrum_line")),
     *(f"excitation/{name}.py" for name in ("corrugation", "irregularity", "lateral_interpolation", "out_of_round")),
+    *(f"excitation/{name}.py" for name in ("coherent_spectrum", "coherent_synthesis", "surface_lines")),
     "excitation/synthesis.py",
     *(
         f"greens/{name}.py"

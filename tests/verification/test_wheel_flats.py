@@ -44,15 +44,15 @@ normal = "winkler"
 rail_radius = 0.3
 youngs_modulus = 207e9
 poisson_ratio = 0.3
-length = 61e-3
+length = 81e-3
 [load]
 preload = 117.7e3
 coupling = "load"
 [[excitation]]
 type = "wheel-flat"
-shape = "rounded"
+shape = "{shape}"
 depth = 0.9e-3
-length = 0.1
+{length}
 angle = {angle}
 """
 
@@ -66,21 +66,28 @@ def test_path_of_a_rigid_wheel():
     assert np.abs(-1e3 * np.interp(R * angle, at, path) - height).max() < 3e-3  # mm
 
 
-def impact(kmh: float, where: float) -> tuple[Case, float]:
-    """A run from rest of the flat to half a metre after its impact ``where`` m behind the fifth sleeper."""
-    x = 4 * SPACING + where
+def impact(kmh: float, shape: str) -> tuple[Case, float]:
+    """A run to half a metre after the impact, which is 0.2 m behind the fifth sleeper."""
+    x = 4 * SPACING + 0.2
     speed = kmh / 3.6
-    return parse_case(CASE.format(speed=speed, duration=(x + 0.5) / speed, angle=x / R)), x
+    length = "length = 0.1" if shape == "rounded" else ""
+    return parse_case(CASE.format(speed=speed, duration=(x + 0.5) / speed, angle=x / R, shape=shape, length=length)), x
 
 
-def springs(bedding: WinklerBedding, x_flat: float) -> Callable[[float, float], tuple[float, float]]:
+def depth(s: NDArray, shape: str) -> NDArray:
+    """Depth of the flat at s m from its middle."""
+    if shape == "new":
+        return np.maximum(DEPTH - s**2 / (2.0 * R), 0.0)
+    return np.where(np.abs(s) < 0.5 * LENGTH, 0.5 * DEPTH * (1.0 + np.cos(2.0 * np.pi * s / LENGTH)), 0.0)
+
+
+def springs(bedding: WinklerBedding, x_flat: float, shape: str) -> Callable[[float, float], tuple[float, float]]:
     """Contact law of the bedding, by a sum over springs 0.1 mm apart under the formula of the flat."""
-    offset = np.arange(-300, 301) * 1e-4
+    offset = np.arange(-400, 401) * 1e-4
     stretch = np.sqrt(R / bedding.radius)
 
     def law(x: float, approach: float) -> tuple[float, float]:
-        s = x - x_flat + offset * stretch
-        flat = np.where(np.abs(s) < 0.5 * LENGTH, 0.5 * DEPTH * (1.0 + np.cos(2.0 * np.pi * s / LENGTH)), 0.0)
+        flat = depth(x - x_flat + offset * stretch, shape)
         deflection = approach - offset**2 / (2.0 * bedding.radius) - flat
         pressed = deflection > 0.0
         return bedding.stiffness * deflection[pressed].sum() * 1e-4, bedding.stiffness * pressed.sum() * 1e-4
@@ -94,9 +101,9 @@ def run(case: Case) -> NDArray:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kmh", [40.0, 75.0, 100.0])
-def test_impact_against_direct_integration(kmh):
-    case, x = impact(kmh, 0.2)
+@pytest.mark.parametrize(("kmh", "shape"), [(40.0, "rounded"), (75.0, "rounded"), (100.0, "rounded"), (100.0, "new")])
+def test_impact_against_direct_integration(kmh, shape):
+    case, x = impact(kmh, shape)
     force = run(case)
     model, track, wheel = build_model(case), track_of(case), wheel_of(case)
     assert isinstance(model.contact, WinklerBedding)
@@ -106,7 +113,7 @@ def test_impact_against_direct_integration(kmh):
     direct = integrate_interaction(
         track,
         wheel,
-        law=springs(model.contact, x),
+        law=springs(model.contact, x, shape),
         preload=LOAD,
         speed=case.simulation.speed,
         start=0.0,
@@ -114,7 +121,15 @@ def test_impact_against_direct_integration(kmh):
         steps=refinement * (len(force) - 1),
     ).force[::refinement]
     passing = slice(round((x - 0.2) / DX), None)
-    assert force[passing].max() == pytest.approx(direct[passing].max(), rel=0.01)  # achieved 0.15, 0.17, 0.25 %
+    assert force[passing].max() == pytest.approx(direct[passing].max(), rel=0.01)  # achieved 0.15, 0.17, 0.25, 0.22 %
     # The smallest force is a difference of large ones: of the load, achieved 0.3 %.
     assert force[passing].min() == pytest.approx(direct[passing].min(), abs=0.01 * LOAD)
-    assert np.std((force - direct)[passing]) < 0.01 * np.std(direct[passing])  # achieved 0.07, 0.31, 0.38 %
+    assert np.std((force - direct)[passing]) < 0.01 * np.std(direct[passing])  # achieved 0.07, 0.31, 0.38, 0.61 %
+    # In rolling over a chord the wheel has to fall with v^2 / R, and P / M and the rail's rebound are all it gets.
+    lost = np.mean(force[passing] == 0.0), np.mean(direct[passing] == 0.0)
+    if shape == "new":
+        assert (kmh / 3.6) ** 2 / R > LOAD / 592.5
+        assert lost[0] * 0.7 == pytest.approx(lost[1] * 0.7, abs=2 * DX)  # m of the way; achieved equal, 8 mm
+        assert lost[0] * 0.7 > 5e-3
+    else:
+        assert lost == (0.0, 0.0)

@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from wheelrail.case.choices import LATER_CHOICES, TAG_KEYS, not_available
+from wheelrail.case.choices import MODEL_KEYS, TAG_KEYS
 from wheelrail.case.consistency import cross_faults
 from wheelrail.case.definition import Case
 from wheelrail.case.faults import (
@@ -25,6 +25,7 @@ from wheelrail.case.faults import (
     shown_value,
 )
 from wheelrail.case.presets import presets_of
+from wheelrail.case.profile_rules import RAIL_PROFILES, WHEEL_PROFILES
 from wheelrail.case.structure_rules import WHEEL_SOURCES
 from wheelrail.case.track_sections import RAIL_SECTIONS
 from wheelrail.case.wheel_sections import WHEEL_SECTIONS
@@ -61,7 +62,6 @@ class CaseCheck:
         self.faults: list[str] = []
         self._done: set[Place] = set()  # places that already have their fault
         self._incomplete: set[Place] = set()  # tables whose keys can't be told missing
-        self._foreign: set[Place] = set()  # tables of later versions, whose keys can't be told unknown
         self._untold: set[Place] = set()  # tables that don't say which of this version's they are
 
     def run(self) -> Case | None:
@@ -140,7 +140,7 @@ class CaseCheck:
     def _check_choices(self, loc: Place, table: dict[str, Any]) -> None:
         """Judge the keys that select a model, before validation picks a table by them."""
         section = str(loc[0])
-        for name, key in LATER_CHOICES:
+        for name, key in MODEL_KEYS:
             if name != section:
                 continue
             available = available_choices(section, key)
@@ -153,8 +153,7 @@ class CaseCheck:
             if key in SELECTORS.get(section, ()):
                 # Only the keys that the tables share can still be judged; any available table will do for that.
                 self._incomplete.add(loc)
-                later = table.get(key) in LATER_CHOICES[section, key]
-                (self._foreign if later else self._untold).add(loc)
+                self._untold.add(loc)
                 table[key] = closest(str(table.get(key)), available) or available[-1]
 
     @staticmethod
@@ -166,8 +165,6 @@ class CaseCheck:
         value = table[key]
         if value in available:
             return None
-        if value in LATER_CHOICES[section, key]:
-            return f"{where} = {shown_value(value)}: {not_available()}; available: {in_words(available)}"
         suggestion = did_you_mean(value, available) if isinstance(value, str) else ""
         return f"{where} = {shown_value(value)}: {suggestion}{must_be_one_of(available)}"
 
@@ -199,14 +196,18 @@ class CaseCheck:
         if kind == "missing":
             return table in self._incomplete
         if kind == "extra_forbidden":
-            return table in self._foreign or (table in self._untold and is_known_key(str(table[0]), key))
+            return table in self._untold and is_known_key(str(table[0]), key)
         return False
 
     def _check_files(self) -> None:
         excitations = self.data.get("excitation", [])
         for index, table in enumerate(excitations):
-            if isinstance(table, dict) and table.get("type") in ("measured", "spectrum"):
+            if isinstance(table, dict) and table.get("type") in ("measured", "spectrum", "wheel-flat"):
                 self._check_file(("excitation", index, "file"), table.get("file"), ())
+        contact = self.data.get("contact")
+        if isinstance(contact, dict):
+            self._check_file(("contact", "wheel_profile"), contact.get("wheel_profile"), WHEEL_PROFILES)
+            self._check_file(("contact", "rail_profile"), contact.get("rail_profile"), RAIL_PROFILES)
         for section, key, presets in (
             ("wheel", "section", WHEEL_SECTIONS),
             ("wheel", "modes", ()),

@@ -1,10 +1,8 @@
-"""Names that select a model: those of this version and those that the case file format foresees for later ones."""
+"""Keys that select a model."""
 
 from __future__ import annotations
 
-from wheelrail.version import __version__
-
-__all__ = ["LATER_CHOICES", "LATER_KEYS", "TAG_KEYS", "not_available"]
+__all__ = ["MODEL_KEYS", "TAG_KEYS"]
 
 TAG_KEYS: dict[str, str] = {
     "wheel": "model",
@@ -15,23 +13,5 @@ TAG_KEYS: dict[str, str] = {
 }
 """Key that says which table a section is."""
 
-LATER_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
-    ("wheel", "model"): (),
-    ("track", "model"): (),
-    ("contact", "normal"): (),
-    ("contact", "tangential"): (),
-    ("friction", "law"): (),
-    ("excitation", "type"): (),
-}
-"""Values by section and key; every key that selects a model is here, also where nothing is to come."""
-
-LATER_KEYS: dict[str, frozenset[str]] = {
-    "contact": frozenset({"wheel_profile", "rail_profile", "inclination"}),
-    "excitation": frozenset({"coherence", "lines"}),
-}
-"""Keys by section."""
-
-
-def not_available() -> str:
-    """Words that follow a name which this version does not offer."""
-    return f"not available in this version ({__version__})"
+MODEL_KEYS: tuple[tuple[str, str], ...] = (*TAG_KEYS.items(), ("contact", "tangential"))
+"""Section and key of everything that selects a model."""

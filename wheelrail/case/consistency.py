@@ -9,6 +9,7 @@ from typing import Any
 from wheelrail.case.excitation_rules import excitation_faults
 from wheelrail.case.friction_rules import friction_faults
 from wheelrail.case.numbers import number, positive, shown, steps
+from wheelrail.case.profile_rules import profile_faults
 from wheelrail.case.structure_rules import structure_faults
 
 __all__ = ["cross_faults", "excitation_label", "shown"]
@@ -43,6 +44,8 @@ def cross_faults(data: Mapping[str, Any]) -> list[str]:
         faults += _odd_faults("contact.length", positive(contact, "length"), "simulation.dx", dx)
     faults += structure_faults(_table(data, "wheel"), track)
     faults += _odd_faults("contact.width", positive(contact, "width"), "contact.dy", positive(contact, "dy"))
+    if contact:
+        faults += profile_faults(contact)
     faults += _prefilter_faults(contact)
     faults += _tangential_faults(data)
     faults += friction_faults(_table(data, "friction"), contact)

@@ -33,6 +33,9 @@ def excitation_faults(label: str, excitation: Mapping[str, Any], dx: float | Non
         case "measured":
             if excitation.get("on") == "wheel" and "beyond_end" in excitation:
                 yield f'{label}.beyond_end: not used with on = "wheel": the line repeats every turn; leave it out'
+            if "column" in excitation and "lateral" in excitation:
+                yield f"{label}: column and lateral both given; column takes one line, lateral all of them"
+            yield from _position_faults(label, excitation, "lateral")
         case "spectrum":
             yield from _spectrum_faults(label, excitation, dx)
         case "wheel-flat":
@@ -61,7 +64,18 @@ def _unused(label: str, table: Mapping[str, Any], keys: tuple[str, ...], where: 
             yield f"{label}.{key}: not used {where}; leave it out"
 
 
+def _position_faults(label: str, excitation: Mapping[str, Any], key: str) -> Iterator[str]:
+    positions = excitation.get(key)
+    if isinstance(positions, list) and len(set(map(str, positions))) < len(positions):
+        yield f"{label}.{key}: a position is given twice"
+
+
 def _spectrum_faults(label: str, excitation: Mapping[str, Any], dx: float | None) -> Iterator[str]:
+    if "lines" in excitation and "coherence" not in excitation:
+        yield f'{label}.coherence: missing; several lines need it (a number, or "none")'
+    if "coherence" in excitation and "lines" not in excitation:
+        yield f"{label}.lines: missing; coherence is that of several lines; give their positions across (m)"
+    yield from _position_faults(label, excitation, "lines")
     if "name" in excitation and "file" in excitation:
         yield f"{label}: name and file both given; give one of them"
     elif "name" not in excitation and "file" not in excitation:
@@ -89,7 +103,7 @@ def _flat_faults(label: str, excitation: Mapping[str, Any]) -> Iterator[str]:
     if shape == "rounded":
         yield from _needed(label, excitation, ("depth", "length"), where)
     if shape in ("new", "rounded"):
-        yield from _unused(label, excitation, ("file",), where)
+        yield from _unused(label, excitation, ("file", "lateral"), where)
     if shape == "measured":
         yield from _needed(label, excitation, ("file",), where)
         yield from _unused(label, excitation, ("depth", "length"), where)

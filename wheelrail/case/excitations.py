@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from wheelrail.case.fields import Section, quantity
+from wheelrail.case.fields import Section, as_tuple, quantity
 from wheelrail.case.irregularities import Corrugation, Dent, OutOfRound, RailJoint, WheelFlat
 
 __all__ = ["SPECTRUM_NAMES", "Excitation", "Measured", "Sinusoid", "Spectrum"]
@@ -28,6 +28,13 @@ class Measured(Section):
     on: Literal["wheel", "rail"] = Field(description="Surface that was measured; a wheel's line repeats every turn")
     column: Annotated[int, Field(ge=1)] | Annotated[str, Field(min_length=1)] | None = Field(
         default=None, description="Height column of the file, by name or by number from 1; left out: the first"
+    )
+    lateral: Annotated[tuple[float, ...], BeforeValidator(as_tuple)] | None = Field(
+        default=None,
+        description="Positions of the file's lines across, m, one for each height column, if its header does not name "
+        "them (as y=-4mm_um): from the tape circle or the rail's axis, + to the field side. With positions all lines "
+        "are used, without only the first",
+        min_length=2,
     )
     beyond_end: Literal["stop", "repeat"] | None = Field(
         default=None, description="rail only: what happens past the end of the line; left out: stop"
@@ -71,6 +78,17 @@ class Spectrum(Section):
         "m",
         None,
         gt=0,
+    )
+    lines: Annotated[tuple[float, ...], BeforeValidator(as_tuple)] | None = Field(
+        default=None,
+        description="Positions of several parallel lines across, m, each with the given spectrum: from the tape circle "
+        "or the rail's axis, + to the field side; left out: one line, the same all across",
+        min_length=2,
+    )
+    coherence: Annotated[float, Field(ge=0)] | Literal["none"] | None = Field(
+        default=None,
+        description="With lines: decay c of their coherence gamma = exp(-c k |dy|) with the wavenumber k and the "
+        'distance dy; 0: all lines the same; "none": none',
     )
 
 

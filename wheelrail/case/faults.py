@@ -12,7 +12,7 @@ from annotated_types import Ge, Gt, Le, Lt, MultipleOf
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from wheelrail.case.choices import LATER_KEYS, TAG_KEYS, not_available
+from wheelrail.case.choices import TAG_KEYS
 from wheelrail.case.consistency import excitation_label
 from wheelrail.case.definition import Case
 from wheelrail.case.fields import allowed_words, unit_of
@@ -189,8 +189,6 @@ def _unknown_section(name: str, value: object) -> str:
 
 
 def _unknown_key(where: str, section: str, key: str, tag: str | None, model: type[BaseModel]) -> str:
-    if key in LATER_KEYS.get(section, ()):
-        return f"{where}: {not_available()}; leave it out"
     allowed = [*model.model_fields, *(["preset"] if presets_of(section) else [])]
     if tag is not None and is_known_key(section, key):
         return f'{where}: not used with {TAG_KEYS[section]} = "{tag}"; allowed: {in_words(allowed)}'

@@ -29,6 +29,12 @@ class WheelFlat(Section):
         "lines (negative: missing material), relative to the folder of the case file",
         min_length=1,
     )
+    lateral: Annotated[tuple[float, ...], BeforeValidator(as_tuple)] | None = Field(
+        default=None,
+        description="measured: positions of the file's lines across, m, from the tape circle, + to the field side, if "
+        "its header does not name them (as y=-4mm_um)",
+        min_length=2,
+    )
     angle: float = quantity(_ANGLE, "rad")
 
 

@@ -38,10 +38,35 @@ class Simulation(Section):
 
 
 class _ContactBase(Section):
-    rail_radius: float = quantity("Transverse radius of the rail head", "m", gt=0)
-    wheel_transverse_radius: float | None = quantity(
-        "Transverse radius of the wheel tread, convex; left out: straight (a cone)", "m", None, gt=0
+    rail_radius: float | None = quantity(
+        "Transverse radius of the rail head; or give wheel_profile and rail_profile", "m", None, gt=0
     )
+    wheel_transverse_radius: float | None = quantity(
+        "With rail_radius: transverse radius of the wheel tread, convex; left out: straight (a cone)", "m", None, gt=0
+    )
+    wheel_profile: str | None = Field(
+        default=None,
+        description='Profile of the wheel: "s1002", "cone", "cylinder", or a file (MiniProf .whl, Simpack .prw, text '
+        "or CSV with lateral position and height), relative to the folder of the case file",
+        min_length=1,
+    )
+    rail_profile: str | None = Field(
+        default=None,
+        description='Profile of the rail head: "60e1", "bv50-like", "circular" (with rail_radius), or a file (MiniProf '
+        ".ban, Simpack .prr, text or CSV), relative to the folder of the case file",
+        min_length=1,
+    )
+    conicity: float | None = quantity(
+        "With the wheel profile cone: slope of the tread, radius falling to the field side", "1", None, ge=0, le=0.5
+    )
+    inclination: float | None = quantity(
+        "With profiles: angle by which the rail leans towards the track's centre, 1:40 = 0.025",
+        "rad",
+        None,
+        ge=-0.2,
+        le=0.2,
+    )
+    yaw: float = quantity("With profiles: yaw angle of the wheelset on the track", "rad", 0.0, ge=-0.1, le=0.1)
     youngs_modulus: float = quantity("Young's modulus of wheel and rail", "Pa", gt=0)
     poisson_ratio: float = quantity("Poisson's ratio of wheel and rail", "1", ge=0, lt=0.5)
     dy: float | None = quantity("Lateral element size; no effect with hertz and winkler", "m", None, gt=0)
@@ -58,7 +83,9 @@ class _ContactBase(Section):
         description="Tangential contact model: none (vertical only); transient rolling after Kalker (with half-space); "
         "a point contact that follows a friction curve, with contact compliance; FASTSIM; Kalker's linear theory",
     )
-    lateral_shift: float = quantity("Lateral displacement of the wheelset on the rail", "m", 0.0)
+    lateral_shift: float = quantity(
+        "Lateral displacement of the wheelset on the rail, positive to the field side", "m", 0.0
+    )
 
 
 class HertzContact(_ContactBase):

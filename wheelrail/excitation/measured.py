@@ -9,9 +9,17 @@ import numpy as np
 from wheelrail.errors import DataFileError, ParameterError
 from wheelrail.excitation.resampling import is_equidistant, resample
 from wheelrail.excitation.sources import Line
-from wheelrail.excitation.table_file import LENGTH_UNITS, MAX_ROWS, read_table
+from wheelrail.excitation.table_file import LENGTH_UNITS, MAX_ROWS, Table, read_table
 
-__all__ = ["read_heights", "read_measured_line"]
+__all__ = [
+    "check_placement",
+    "heights_of",
+    "line_on_grid",
+    "positions_of",
+    "read_height_table",
+    "read_heights",
+    "read_measured_line",
+]
 
 _FEWEST_POINTS = 16
 _LARGEST_GAP = 5.0  # median spacings
@@ -43,16 +51,30 @@ def read_heights(path: Path | str, *, column: str | int | None = None) -> tuple[
     DataFileError
         The file can't be read or used; the message gives line, value and what is allowed.
     """
+    table = read_height_table(path)
+    chosen = _column(table.path, table.names, column)
+    return positions_of(table), heights_of(table, chosen)
+
+
+def read_height_table(path: Path | str) -> Table:
+    """Read positions and heights as they are printed; :func:`positions_of` and :func:`heights_of` check them.
+
+    Raises
+    ------
+    DataFileError
+        The file can't be read as a table of lengths.
+    """
     units = tuple(LENGTH_UNITS)
-    table = read_table(path, column_units=(units, units))
+    return read_table(path, column_units=(units, units))
+
+
+def positions_of(table: Table) -> np.ndarray:
+    """Positions, m, shape (n,); checked: enough, increasing and without gaps (else `DataFileError`)."""
     path = table.path
-    chosen = _column(path, table.names, column)
     count = table.values.shape[0]
     if count < _FEWEST_POINTS:
         raise DataFileError(f"{path}: {count} points; a roughness line needs at least {_FEWEST_POINTS}")
     x = table.values[:, 0] * LENGTH_UNITS[table.units[0]]
-    r = table.values[:, chosen] * LENGTH_UNITS[table.units[chosen]]
-
     steps = np.diff(x)
     if np.any(steps <= 0.0):
         row = int(np.argmax(steps <= 0.0)) + 1
@@ -68,13 +90,19 @@ def read_heights(path: Path | str, *, column: str | int | None = None) -> tuple[
             f"{path}, line {table.lines[row]}: gap of {steps[row - 1]:g} m before x = {x[row]:g} m; at most "
             f"{_LARGEST_GAP:g} times the median spacing of {median:g} m is allowed. Fill the gap or cut the file there."
         )
+    return x
+
+
+def heights_of(table: Table, column: int) -> np.ndarray:
+    """Heights of a column (1 is the first), m, shape (n,); checked: plausible (else `DataFileError`)."""
+    r = table.values[:, column] * LENGTH_UNITS[table.units[column]]
     if np.any(np.abs(r) > _LARGEST_HEIGHT):
         row = int(np.argmax(np.abs(r) > _LARGEST_HEIGHT))
         raise DataFileError(
-            f"{path}, line {table.lines[row]}: height {table.values[row, chosen]:g} {table.units[chosen]} is "
+            f"{table.path}, line {table.lines[row]}: height {table.values[row, column]:g} {table.units[column]} is "
             f"implausible (at most {_LARGEST_HEIGHT * 1e3:g} mm); is the unit in the header right?"
         )
-    return x, r
+    return r
 
 
 def _column(path: Path, names: tuple[str, ...], column: str | int | None) -> int:
@@ -131,12 +159,45 @@ def read_measured_line(
     ParameterError
         Another value of ``on`` or ``beyond_end``, or no radius for a wheel.
     """
+    check_placement(on=on, beyond_end=beyond_end)
+    path = Path(path)
+    x, r = read_heights(path, column=column)
+    return line_on_grid(path, x, r, dx=dx, on=on, wheel_radius=wheel_radius, beyond_end=beyond_end)
+
+
+def check_placement(*, on: str, beyond_end: str) -> None:
+    """Raise `ParameterError` unless the surface and the treatment of the ends are known."""
     if on not in ("wheel", "rail"):
         raise ParameterError("on", on, 'allowed: "wheel" or "rail"')
     if beyond_end not in ("stop", "repeat"):
         raise ParameterError("beyond_end", beyond_end, 'allowed: "stop" or "repeat"')
-    path = Path(path)
-    x, r = read_heights(path, column=column)
+
+
+def line_on_grid(
+    path: Path, x: np.ndarray, r: np.ndarray, *, dx: float, on: str, wheel_radius: float | None, beyond_end: str
+) -> tuple[Line, list[str]]:
+    """Bring checked heights onto the grid, as :func:`read_measured_line` says; the path is for messages.
+
+    Parameters
+    ----------
+    path : Path
+    x, r : ndarray, shape (n,)
+        From :func:`read_heights`, m.
+    dx, on, wheel_radius, beyond_end
+        As for :func:`read_measured_line`.
+
+    Returns
+    -------
+    line : Line
+    notes : list of str
+
+    Raises
+    ------
+    DataFileError
+        The line is too long or too short.
+    ParameterError
+        No radius for a wheel.
+    """
     span = float(x[-1] - x[0])
     if span / dx > 10 * MAX_ROWS:
         raise DataFileError(

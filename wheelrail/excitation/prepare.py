@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from wheelrail.errors import DataFileError, ParameterError
 from wheelrail.excitation.measured import read_measured_line
+from wheelrail.excitation.measured_lines import read_height_lines, read_measured_lines
 from wheelrail.excitation.named_spectra import SpectrumTable, named_spectrum, read_spectrum
 from wheelrail.excitation.prepare_irregularities import (
     prepare_corrugation,
@@ -18,7 +20,7 @@ from wheelrail.excitation.prepare_irregularities import (
     prepare_rail_joint,
     prepare_wheel_flat,
 )
-from wheelrail.excitation.sources import Sinusoid, Source, SpectrumLine
+from wheelrail.excitation.sources import CoherentSpectrum, Sinusoid, Source, SpectrumLine
 from wheelrail.excitation.synthesis import plan_harmonics, rail_repeat_length
 from wheelrail.excitation.view import ContactView
 
@@ -104,7 +106,16 @@ def _measured(
     on: str,
     beyond_end: str = "stop",
     column: str | int | None = None,
+    lateral: Sequence[float] | None = None,
 ) -> tuple[Source, list[str]]:
+    if column is not None and lateral is not None:
+        raise ParameterError(
+            "lateral", list(lateral), f"column = {column!r} takes one line of the file; give one of them"
+        )
+    if lateral is not None or (column is None and read_height_lines(file).lateral is not None):
+        return read_measured_lines(
+            file, dx=dx, on=on, wheel_radius=wheel_radius, beyond_end=beyond_end, lateral=lateral
+        )
     return read_measured_line(file, dx=dx, on=on, wheel_radius=wheel_radius, beyond_end=beyond_end, column=column)
 
 
@@ -118,6 +129,8 @@ def _spectrum(
     name: str | None = None,
     file: str | Path | None = None,
     length: float | None = None,
+    lines: Sequence[float] | None = None,
+    coherence: float | str | None = None,
 ) -> tuple[Source, list[str]]:
     if (name is None) == (file is None):
         raise ParameterError("name", name, "a spectrum needs either a name or a file, not both")
@@ -131,7 +144,7 @@ def _spectrum(
         notes.append(f"{table.name}: a spectrum of the {table.surface} is used on the {on}")
     length = _repeat_length(table, dx=dx, wheel_radius=wheel_radius, on=on, length=length, notes=notes)
     label = f"spectrum {table.name} on the {on}"
-    recipe = SpectrumLine(
+    recipe: SpectrumLine | CoherentSpectrum = SpectrumLine(
         wavelengths=table.wavelengths, levels=table.levels, length=length, seed=int(seed), dx=dx, on=on, name=label
     )
     try:
@@ -148,7 +161,26 @@ def _spectrum(
         if np.any(mask):
             bands = ", ".join(f"{wavelength * 1e3:.4g}" for wavelength in table.wavelengths[mask])
             notes.append(f"{label}: bands left out (centre wavelength, mm): {bands}; {reason}")
+    if lines is not None:
+        recipe = _several_lines(recipe, lines, coherence, notes)
+    elif coherence is not None:
+        raise ParameterError("coherence", coherence, "it is that of several lines; give lines, their positions across")
     return recipe, notes
+
+
+def _several_lines(
+    recipe: SpectrumLine, lines: Sequence[float], coherence: float | str | None, notes: list[str]
+) -> CoherentSpectrum:
+    lateral = np.sort(np.asarray(lines, dtype=float))
+    if len(lateral) < 2 or not np.all(np.diff(lateral) > 0.0):
+        raise ParameterError("lines", list(lines), "at least two different positions across, m")
+    if coherence is None or (isinstance(coherence, str) and coherence != "none"):
+        raise ParameterError("coherence", coherence, 'a number c >= 0 of exp(-c k |dy|), or "none"')
+    decay = math.inf if isinstance(coherence, str) else float(coherence)
+    shown = ", ".join(f"{1e3 * y:g}" for y in lateral)
+    notes.append(f"{recipe.name}: {len(lateral)} lines at y = {shown} mm, coherence gamma = exp(-{decay:g} k |dy|)")
+    parts = {name: getattr(recipe, name) for name in ("wavelengths", "levels", "length", "seed", "dx", "on", "name")}
+    return CoherentSpectrum(lateral=lateral, decay=decay, **parts)
 
 
 def _repeat_length(

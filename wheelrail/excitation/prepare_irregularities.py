@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from wheelrail.errors import ParameterError
 from wheelrail.excitation.corrugation import Corrugation
 from wheelrail.excitation.dent import dent
 from wheelrail.excitation.irregularity import Irregularity
+from wheelrail.excitation.measured_flat import measured_flat
 from wheelrail.excitation.out_of_round import OutOfRound
 from wheelrail.excitation.rail_joint import rail_joint
 from wheelrail.excitation.view import ContactView, rigid_path
@@ -82,10 +84,13 @@ def prepare_wheel_flat(
     angle: float,
     depth: float | None = None,
     length: float | None = None,
+    file: str | Path | None = None,
+    lateral: Sequence[float] | None = None,
 ) -> tuple[Irregularity, list[str]]:
     """Flat on the wheel; ``angle`` in rad, by which the wheel has to turn from x = 0 until its middle is below."""
     turn = _turn(wheel_radius, "a wheel flat")
     radius = view.radius
+    across = np.zeros(1)
     if shape == "new":
         positions, heights, notes = chord_flat(depth=depth, length=length, radius=radius)
     elif shape == "rounded":
@@ -93,8 +98,12 @@ def prepare_wheel_flat(
             missing = "depth" if depth is None else "length"
             raise ParameterError(missing, None, "a rounded flat needs its depth and its length")
         positions, heights, notes = rounded_flat(depth=depth, length=length, radius=radius)
+    elif shape == "measured":
+        if file is None:
+            raise ParameterError("file", None, "a measured flat needs its file")
+        positions, heights, across, notes = measured_flat(file, lateral=lateral)
     else:
-        raise ParameterError("shape", shape, 'allowed: "new", "rounded"')
+        raise ParameterError("shape", shape, 'allowed: "new", "rounded", "measured"')
     if positions[-1] - positions[0] > _FLAT_SHARE * turn:
         raise ParameterError(
             "length",
@@ -104,8 +113,8 @@ def prepare_wheel_flat(
     origin = math.fmod(angle, 2.0 * math.pi) * turn / (2.0 * math.pi)
     source = _surface(
         positions,
-        heights[None, :],
-        lateral=np.zeros(1),
+        np.atleast_2d(heights),
+        lateral=across,
         on="wheel",
         origin=origin,
         period=turn,

@@ -14,14 +14,17 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelFileError
+from .coherent_spectrum import CoherentSpectrum
 from .corrugation import Corrugation
 from .irregularity import Irregularity
 from .line import Line
 from .out_of_round import OutOfRound
 from .sinusoid import Sinusoid
 from .spectrum_line import SpectrumLine
+from .surface_lines import SurfaceLines
 
 __all__ = [
+    "CoherentSpectrum",
     "Corrugation",
     "Irregularity",
     "Line",
@@ -29,16 +32,19 @@ __all__ = [
     "Sinusoid",
     "Source",
     "SpectrumLine",
+    "SurfaceLines",
     "source_from_parts",
 ]
 
-Source = Sinusoid | Line | SpectrumLine | Irregularity | Corrugation | OutOfRound
+Source = Sinusoid | Line | SpectrumLine | SurfaceLines | CoherentSpectrum | Irregularity | Corrugation | OutOfRound
 """Any source of roughness."""
 
 _KINDS: dict[str, Any] = {
     "sinusoid": Sinusoid,
     "line": Line,
     "spectrum": SpectrumLine,
+    "surface-lines": SurfaceLines,
+    "coherent-spectrum": CoherentSpectrum,
     "irregularity": Irregularity,
     "corrugation": Corrugation,
     "out-of-round": OutOfRound,

@@ -84,8 +84,6 @@ def explain_what_has_no_effect(case: Case) -> list[str]:
         for key in unused
         if getattr(case.contact, key) is not None
     ]
-    if case.contact.lateral_shift:
-        lines.append("contact.lateral_shift: the contact geometry does not depend on it yet")
     if case.contact.normal == "hertz" and case.contact.prefilter == "none" and case.contact.length is not None:
         lines.append("contact.length: the Hertz spring without prefilter is a point")
     return lines

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from wheelrail.case import Case
+from wheelrail.case.excitations import Measured, Spectrum
 from wheelrail.contact.hertz import HertzContact
 from wheelrail.excitation.prepare import prepare_source
 from wheelrail.interaction.contacts import view_of
@@ -32,7 +33,7 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
                 warnings.append(
                     f"excitation #{number}: only {steps:.3g} dx per wavelength; at least {_FEWEST_PER_WAVE} are advised"
                 )
-        elif entry.type in ("measured", "spectrum"):
+        elif isinstance(entry, Measured | Spectrum):
             name = getattr(entry, "name", None) or getattr(entry, "file", None)
             lines.append(f"{number}. {entry.type}: {name}, on the {entry.on}")
         else:

@@ -12,6 +12,7 @@ from wheelrail.explain.equations import explain_equations, explain_sources
 from wheelrail.explain.excitation import explain_excitation
 from wheelrail.explain.frequencies import explain_frequencies
 from wheelrail.explain.friction import explain_friction
+from wheelrail.explain.geometry import explain_geometry
 from wheelrail.explain.structures import explain_track, explain_wheel
 from wheelrail.interaction.build import hertz_of, track_of, wheel_of
 from wheelrail.interaction.tracks import find_greens_of
@@ -52,6 +53,7 @@ def explain(case: Case) -> str:
         ("Grid and time", explain_grid(case, hertz, warnings)),
         ("Wheel", explain_wheel(case, wheel, warnings)),
         ("Track", explain_track(case, track, greens, warnings)),
+        ("Geometry", explain_geometry(case, hertz.approach, warnings)),
         ("Contact", explain_contact(case, hertz, warnings)),
         ("Friction", explain_friction(case, hertz, warnings)),
         ("Frequencies", explain_frequencies(case, moving, track, hertz)),

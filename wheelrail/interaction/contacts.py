@@ -34,6 +34,7 @@ def geometry_of(case: Case) -> ContactGeometry:
 def curvatures_of(case: Case) -> tuple[float, float]:
     """Return the sums of wheel's and rail's curvatures in rolling and in lateral direction, 1/m."""
     transverse = case.contact.wheel_transverse_radius
+    assert case.contact.rail_radius is not None
     lateral = 1.0 / case.contact.rail_radius + (0.0 if transverse is None else 1.0 / transverse)
     return 1.0 / case.wheel.radius, lateral
 

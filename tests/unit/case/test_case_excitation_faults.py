@@ -20,7 +20,19 @@ ALLOWED = [
     ROUND,
     {"type": "corrugation", "amplitude": 1e-5, "wavelength": 0.05, "start": 0.0, "length": 3.0},
 ]
+LINES = {"type": "spectrum", "name": "iso3095-2013-limit", "on": "rail", "seed": 1, "lines": [-2e-3, 0.0, 2e-3]}
+MEASURED = {"type": "measured", "file": "r.csv", "on": "rail"}
+ALLOWED += [{**LINES, "coherence": 1.5}, {**LINES, "coherence": 0}, {**LINES, "coherence": "none"}]
 FAULTS = [
+    (LINES, 'excitation #1.coherence: missing; several lines need it (a number, or "none")'),
+    (
+        {**LINES, "lines": [0.0, 1e-3, 0.0], "coherence": 1.0},
+        "excitation #1.lines: a position is given twice",
+    ),
+    (
+        {**MEASURED, "column": 1, "lateral": [0.0, 1e-3]},
+        "excitation #1: column and lateral both given; column takes one line, lateral all of them",
+    ),
     ({**FLAT, "shape": "new"}, "excitation #1.depth: missing; a new flat needs its depth or its length (m)"),
     (
         {**FLAT, "shape": "rounded", "depth": 1e-3},
@@ -59,5 +71,6 @@ def test_allowed(entry):
 
 
 @pytest.mark.parametrize(("entry", "line"), FAULTS, ids=lambda value: str(value)[:60])
-def test_faults(entry, line):
-    assert faults_of(changed({"excitation": [entry]})) == [line]
+def test_faults(entry, line, tmp_path):
+    (tmp_path / "r.csv").touch()
+    assert faults_of(changed({"excitation": [entry]}), folder=tmp_path) == [line]

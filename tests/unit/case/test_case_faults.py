@@ -11,9 +11,6 @@ from wheelrail.case.track_sections import RAIL_SECTIONS
 from wheelrail.case.wheel_sections import WHEEL_SECTIONS
 from wheelrail.errors import CaseError
 
-VERSION_WORDS = "not available in this version (0.1.0)"
-
-
 HERTZ = {"normal": "hertz", "rail_radius": 0.3, "youngs_modulus": 207e9, "poisson_ratio": 0.3}
 
 WHEEL = {"preset": None, **presets_of("wheel")["synthetic-c20"].values}
@@ -88,7 +85,8 @@ SINGLE = [
     ({"contact.normal": None}, "contact.normal: missing; give one of: hertz, winkler, half-space"),
     (
         {"excitation.1.type": None},
-        "excitation #2.type: missing; give one of: sinusoid, measured, spectrum, wheel-flat, rail-joint, dent, corrugation, out-of-round",
+        "excitation #2.type: missing; give one of: sinusoid, measured, spectrum, wheel-flat, rail-joint, dent, "
+        "corrugation, out-of-round",
     ),
     (
         {"simulation": None},
@@ -127,8 +125,10 @@ SINGLE = [
         {"excitation": [{"type": "wheel-flat", "depth": 1e-3, "length": 0.1, "shape": "oval", "angle": 0.0}]},
         'excitation #1.shape = "oval": must be one of: new, rounded, measured',
     ),
-    ({"excitation.0.coherence": 1.0}, f"excitation #1.coherence: {VERSION_WORDS}; leave it out"),
-    ({"contact.wheel_profile": "s1002"}, f"contact.wheel_profile: {VERSION_WORDS}; leave it out"),
+    (
+        {"excitation.0.coherence": 1.0},
+        "excitation #1.lines: missing; coherence is that of several lines; give their positions across (m)",
+    ),
     # presets
     (
         {"wheel.preset": "thesis-3dof"},

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from wheelrail.errors import ParameterError
+from wheelrail.errors import DataFileError, ParameterError
 from wheelrail.excitation.dent import dent
 from wheelrail.excitation.prepare import prepare_source
 from wheelrail.excitation.rail_joint import rail_joint
@@ -129,3 +129,45 @@ def test_angle_says_where_the_flat_comes_down():
     lowest = np.flatnonzero(out < -0.9999e-3)
     assert abs(lowest[0] * 1e-3 - math.pi * R) < 1e-3
     assert any("x = 1.44513 m and every 2.89027 m" in note for note in notes)
+
+
+def flat_file(path, *, lines=1, tilt=0.0, reach=0.08):
+    x = np.arange(-reach, reach + 1e-9, 1e-3)
+    depth = np.where(np.abs(x) < 0.05, 0.45 * (1 + np.cos(2 * np.pi * x / 0.1)), 0.0)
+    columns = ["x_m", "height_mm"] if lines == 1 else ["x_m", *(f"y={4 * i - 4}mm_mm" for i in range(lines))]
+    rows = [[xi, *(-(1.0 - 0.1 * i) * d + tilt * xi for i in range(lines))] for xi, d in zip(x, depth, strict=True)]
+    path.write_text(",".join(columns) + "\n" + "\n".join(",".join(f"{v:.9g}" for v in row) for row in rows))
+    return path
+
+
+def test_a_measured_flat(tmp_path):
+    path = flat_file(tmp_path / "flat.csv", tilt=0.3)
+    source, notes = prepare_source(type="wheel-flat", shape="measured", file=path, angle=0.0, **COMMON)
+    formula, _ = prepare_source(type="wheel-flat", shape="rounded", depth=0.9e-3, length=0.1, angle=0.0, **COMMON)
+    for first in (-40, -5, 30):
+        measured, exact = np.zeros(41), np.zeros(41)
+        source.add_window(first, measured)
+        formula.add_window(first, exact)
+        np.testing.assert_allclose(measured, exact, rtol=0, atol=3e-7)  # points 1 mm apart: 2.2e-7
+    assert any("0.9 mm deep on 1 line of 160 mm" in note for note in notes)
+
+
+def test_a_measured_flat_of_several_lines(tmp_path):
+    path = flat_file(tmp_path / "flat.csv", lines=3)
+    source, notes = prepare_source(type="wheel-flat", shape="measured", file=path, angle=0.0, **COMMON)
+    out = np.zeros((3, 1))
+    source.add_surface(0, np.array([-4e-3, 0.0, 2e-3]), np.zeros(3), out)
+    np.testing.assert_allclose(out[:, 0], [-0.9e-3, -0.81e-3, -0.765e-3], rtol=1e-6)
+    assert any("on 3 lines" in note for note in notes)
+
+
+def test_a_file_that_ends_in_the_flat(tmp_path):
+    path = flat_file(tmp_path / "flat.csv", reach=0.03)
+    with pytest.raises(DataFileError, match="sound tread"):
+        prepare_source(type="wheel-flat", shape="measured", file=path, angle=0.0, **COMMON)
+    bump = flat_file(tmp_path / "bump.csv")
+    bump.write_text(
+        "\n".join(line if i == 0 else line.replace(",-", ",") for i, line in enumerate(bump.read_text().splitlines()))
+    )
+    with pytest.raises(DataFileError, match="no flat"):
+        prepare_source(type="wheel-flat", shape="measured", file=bump, angle=0.0, **COMMON)
