@@ -11,12 +11,9 @@ import numpy as np
 from .coherent_synthesis import synthesise_lines
 from .sampled_heights import check_spacing, read_only, require
 from .surface_lines import SurfaceLines
-from .synthesis import plan_harmonics
+from .synthesis import plan_harmonics, seed_words
 
 __all__ = ["CoherentSpectrum"]
-
-_STREAM = {"rail": 0, "wheel": 1}
-# Seed word that keeps rail lines and wheel lines of equal seed apart; as in `wheelrail.excitation.spectrum_line`.
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +72,7 @@ class CoherentSpectrum:
         require(bool(np.isfinite(self.dx)) and self.dx > 0.0, "dx must be positive")
         require(bool(np.isfinite(self.length)) and self.length > 4.0 * self.dx, "length must be longer than 4 dx")
         require(int(self.seed) == self.seed and self.seed >= 0, "seed must be a whole number, not negative")
-        require(self.on in _STREAM, "on must be 'wheel' or 'rail'")
+        require(self.on in ("wheel", "rail"), "on must be 'wheel' or 'rail'")
 
     @property
     def count(self) -> int:
@@ -107,13 +104,7 @@ class CoherentSpectrum:
             Periodic, first node 0.
         """
         check_spacing(self.dx, dx)
-        entropy = [int(self.seed), _STREAM[self.on]]
-        if seed_override is not None:
-            require(int(seed_override) == seed_override and seed_override >= 0, "seed_override must not be negative")
-            # The leading word tells an override apart from a longer own seed.
-            entropy = [1, int(seed_override), *entropy]
-        else:
-            entropy = [0, 0, *entropy]
+        entropy = seed_words(seed=self.seed, on=self.on, override=seed_override)
         plan = plan_harmonics(wavelengths=self.wavelengths, levels=self.levels, count=self.count, dx=self.dx)
         values = synthesise_lines(
             plan, count=self.count, dx=self.dx, lateral=self.lateral, decay=self.decay, entropy=entropy

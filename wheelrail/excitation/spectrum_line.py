@@ -10,12 +10,9 @@ import numpy as np
 
 from .line import Line
 from .sampled_heights import check_spacing, read_only, require
-from .synthesis import plan_harmonics, synthesise
+from .synthesis import plan_harmonics, seed_words, synthesise
 
 __all__ = ["SpectrumLine"]
-
-_STREAM = {"rail": 0, "wheel": 1}
-# Seed word that keeps a rail line and a wheel line of equal seed apart.
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +57,7 @@ class SpectrumLine:
         require(bool(np.isfinite(self.dx)) and self.dx > 0.0, "dx must be positive")
         require(bool(np.isfinite(self.length)) and self.length > 4.0 * self.dx, "length must be longer than 4 dx")
         require(int(self.seed) == self.seed and self.seed >= 0, "seed must be a whole number, not negative")
-        require(self.on in _STREAM, "on must be 'wheel' or 'rail'")
+        require(self.on in ("wheel", "rail"), "on must be 'wheel' or 'rail'")
 
     @property
     def count(self) -> int:
@@ -87,13 +84,7 @@ class SpectrumLine:
             Periodic, first node 0.
         """
         check_spacing(self.dx, dx)
-        entropy = [int(self.seed), _STREAM[self.on]]
-        if seed_override is not None:
-            require(int(seed_override) == seed_override and seed_override >= 0, "seed_override must not be negative")
-            # The leading word tells an override apart from a longer own seed.
-            entropy = [1, int(seed_override), *entropy]
-        else:
-            entropy = [0, 0, *entropy]
+        entropy = seed_words(seed=self.seed, on=self.on, override=seed_override)
         plan = plan_harmonics(wavelengths=self.wavelengths, levels=self.levels, count=self.count, dx=self.dx)
         values = synthesise(plan, count=self.count, entropy=entropy)
         return Line(values=values, first_index=0, dx=self.dx, periodic=True, name=self.name)

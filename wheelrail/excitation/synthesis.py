@@ -15,10 +15,13 @@ import numpy as np
 
 from ..numerics.third_octave_bands import band_edges
 
-__all__ = ["REFERENCE_HEIGHT", "HarmonicPlan", "plan_harmonics", "rail_repeat_length", "synthesise"]
+__all__ = ["REFERENCE_HEIGHT", "HarmonicPlan", "plan_harmonics", "rail_repeat_length", "seed_words", "synthesise"]
 
 REFERENCE_HEIGHT = 1e-6
 """Reference of roughness levels, m: L_r = 10 lg(r_rms^2 / (1 um)^2) dB (EN 15610)."""
+
+_STREAM = {"rail": 0, "wheel": 1}
+# Seed word that keeps a rail line and a wheel line of equal seed apart.
 
 _WAVELENGTHS_PER_REPEAT = 10.0
 _SHORTEST_REPEAT = 20.0  # m
@@ -111,6 +114,32 @@ def _interpolate(at: np.ndarray, knots: np.ndarray, values: np.ndarray) -> np.nd
         return inside
     slopes = np.diff(values) / np.diff(knots)
     return inside + slopes[0] * np.minimum(at - knots[0], 0.0) + slopes[-1] * np.maximum(at - knots[-1], 0.0)
+
+
+def seed_words(*, seed: int, on: str, override: int | None) -> list[int]:
+    """Seed words of a source.
+
+    Parameters
+    ----------
+    seed : int
+        The source's own.
+    on : {"wheel", "rail"}
+        Surface that carries it.
+    override : int or None
+        Another realisation of the whole case: combined with the own seed, so that sources stay independent.
+
+    Raises
+    ------
+    ValueError
+        The override is negative or no whole number.
+    """
+    own = [int(seed), _STREAM[on]]
+    if override is None:
+        return [0, 0, *own]
+    if int(override) != override or override < 0:
+        raise ValueError("seed_override must not be negative")
+    # The leading word tells an override apart from a longer own seed.
+    return [1, int(override), *own]
 
 
 def synthesise(plan: HarmonicPlan, *, count: int, entropy: Sequence[int]) -> np.ndarray:

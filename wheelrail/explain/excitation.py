@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from wheelrail.case import Case
 from wheelrail.case.excitations import Measured, Spectrum
 from wheelrail.contact.hertz import HertzContact
 from wheelrail.excitation.prepare import prepare_source
-from wheelrail.interaction.contacts import view_of
+from wheelrail.excitation.sources import CoherentSpectrum, SurfaceLines
+from wheelrail.interaction.contacts import geometry_of, view_of
 
 __all__ = ["explain_excitation"]
 
@@ -38,6 +41,8 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
             lines.append(f"{number}. {entry.type}: {name}, on the {entry.on}")
         else:
             lines.append(f"{number}. {entry.type}")
+        if isinstance(source, SurfaceLines | CoherentSpectrum):
+            warnings += [f"excitation #{number}: {line}" for line in _beyond_the_lines(case, source, hertz)]
         covered = source.covered()
         if covered is not None:
             first, last = covered
@@ -58,3 +63,16 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
                 warnings.append(f"excitation #{number}: {note}")
     bays = "; only the track's bays excite" if case.track.model != "rigid" else ""
     return lines or [f"none: smooth wheel and rail{bays}"]
+
+
+def _beyond_the_lines(case: Case, source: SurfaceLines | CoherentSpectrum, hertz: HertzContact) -> Iterator[str]:
+    """Say that the contact is wider than what is known of the roughness."""
+    place = geometry_of(case).place(case.contact.lateral_shift)
+    middle = place.y_wheel if source.on == "wheel" else place.y_rail
+    first, last = source.lateral_range
+    low, high = middle - hertz.semi_axis_y, middle + hertz.semi_axis_y
+    if low < first or high > last:
+        yield (
+            f"its lines reach from {1e3 * first:+.3g} to {1e3 * last:+.3g} mm, the contact under the preload from "
+            f"{1e3 * low:+.3g} to {1e3 * high:+.3g} mm; beyond the outermost lines their heights continue"
+        )
