@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["main"]
 
 _DEFAULT_CASE = "default case"
-_ERROR, _INTERRUPTED, _BROKEN_PIPE = 2, 130, 141
+_FAILED_POINTS, _ERROR, _INTERRUPTED, _BROKEN_PIPE = 1, 2, 130, 141
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -39,7 +39,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0; 2 after a mistake of the user, which is one message on stderr; 130 after Ctrl-C, 143 after SIGTERM.
+        0; 1 if points of a study failed; 2 after a mistake of the user, which is one message on stderr; 130 after
+        Ctrl-C, 143 after SIGTERM.
     """
     options = _parser().parse_args(argv)
     logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING, stream=sys.stderr, force=True)
@@ -79,6 +80,17 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--quiet", action="store_true", help="no progress and no summary; errors and warnings only")
     run.set_defaults(command=_run)
 
+    study = commands.add_parser("study", help="run many cases that differ in some keys, and write one data set")
+    study.add_argument("study", metavar="STUDY", help="study file (TOML)")
+    study.add_argument("--output", metavar="FILE", help="data set (netCDF); left out: named after the study file")
+    where = study.add_mutually_exclusive_group()
+    where.add_argument("--workers", type=int, metavar="N", help="worker processes, 0 for none; left out: one per core")
+    where.add_argument("--scheduler", metavar="ADDRESS", help="use the workers of an existing Dask cluster")
+    study.add_argument("--resume", action="store_true", help="continue an interrupted study")
+    study.add_argument("--retry-failed", action="store_true", help="continue, and compute failed points again")
+    study.add_argument("--quiet", action="store_true", help="no progress and no summary; errors only")
+    study.set_defaults(command=_study)
+
     build = commands.add_parser("build", help="build WheelRail.fmu from a case")
     build.add_argument("case", nargs="?", metavar="CASE", help=case_help)
     build.add_argument("--output", metavar="DIR", default=".", help="folder of the FMU; left out: the current one")
@@ -107,6 +119,18 @@ def _parser() -> argparse.ArgumentParser:
     stability = commands.add_parser("stability", help="say which wheel modes grow in steady sliding: what can squeal")
     stability.add_argument("case", metavar="CASE", help="case file with a flexible wheel, friction and creepage")
     stability.set_defaults(command=_stability)
+
+    roughness = commands.add_parser("roughness", help="levels of measured roughness, compared with a limit")
+    roughness.add_argument("file", metavar="FILE", help="positions along and heights, one column for each line")
+    roughness.add_argument("--on", choices=("rail", "wheel"), default="rail", help="left out: rail")
+    roughness.add_argument("--wheel-radius", type=float, metavar="M", help="rolling radius in m; with --on wheel")
+    roughness.add_argument("--limit", metavar="NAME", default="iso3095-2013-limit", help="name of a spectrum")
+    roughness.add_argument("--segment", type=float, default=4.0, metavar="M", help="segment length in m; left out: 4")
+    roughness.add_argument("--raw", action="store_true", help="keep spikes and pits as measured")
+    roughness.add_argument(
+        "--output", metavar="DIR", default=".", help="folder of the files; left out: the current one"
+    )
+    roughness.set_defaults(command=_roughness)
 
     schema = commands.add_parser("schema", help="print the JSON schema of case files")
     schema.set_defaults(command=_schema)
@@ -201,6 +225,40 @@ def _summary(summary: RunSummary) -> str:
         f"result           {summary.path}",
     ]
     return "\n".join(lines)
+
+
+def _study(options: argparse.Namespace) -> int:
+    from wheelrail.study import load_study, run_study
+    from wheelrail.study.run import is_unfinished
+
+    quiet = options.quiet
+    study = load_study(options.study)
+    path = Path(options.output if options.output is not None else f"{Path(options.study).stem}.nc")
+    resume = options.resume or options.retry_failed
+    if not resume and not quiet and is_unfinished(path):
+        _say(f"{path} has points of a study that is not complete, which will be replaced; --resume would continue it")
+    with progress_bar("points", total=len(study.points), unit="points", quiet=quiet) as reached:
+        summary = run_study(
+            study,
+            path,
+            workers=options.workers,
+            scheduler=options.scheduler,
+            resume=resume,
+            retry_failed=options.retry_failed,
+            progress=lambda _, finished: reached(finished),
+        )
+    for point, reason in summary.failures:
+        _say(f"failed: point {point.index + 1} ({point.label}): {reason}")
+    if summary.interrupted_by is not None:
+        target = "" if options.output is None else f" --output {options.output}"
+        _say(
+            f"interrupted; {summary.finished} of {summary.points} points are finished and kept\n"
+            f"to continue: wheelrail study {options.study}{target} --resume"
+        )
+        return 128 + summary.interrupted_by
+    if not quiet:
+        print(summary)
+    return _FAILED_POINTS if summary.failures else 0
 
 
 def _build(options: argparse.Namespace) -> int:
@@ -300,6 +358,26 @@ def _stability(options: argparse.Namespace) -> int:
             f"warning: in steady rolling the tangential force is {result.saturation:.3f} of the friction limit; this "
             "check takes the contact as sliding fully, so it does not hold here"
         )
+    return 0
+
+
+def _roughness(options: argparse.Namespace) -> int:
+    from wheelrail.roughness_command import roughness_report
+
+    report = roughness_report(
+        options.file,
+        options.output,
+        on=options.on,
+        wheel_radius=options.wheel_radius,
+        limit=options.limit,
+        process=not options.raw,
+        segment_length=options.segment,
+    )
+    print(report.text)
+    for note in report.notes:
+        _say(note)
+    for path in report.files:
+        print(path)
     return 0
 
 
