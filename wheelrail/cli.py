@@ -12,7 +12,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from wheelrail.case import Case, case_from_dict, default_case_text, load_case, parse_case
+from wheelrail.case import case_from_dict, default_case_text
+from wheelrail.cli_evaluation import add_evaluations
+from wheelrail.cli_shared import case_of, say
 from wheelrail.errors import WheelrailError
 from wheelrail.progress import progress_bar
 from wheelrail.version import __version__
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
-_DEFAULT_CASE = "default case"
 _FAILED_POINTS, _ERROR, _INTERRUPTED, _BROKEN_PIPE = 1, 2, 130, 141
 
 
@@ -52,7 +53,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except WheelrailError as error:
         return _refuse(error)
     except KeyboardInterrupt:
-        _say("interrupted; nothing was saved")
+        say("interrupted; nothing was saved")
         return _INTERRUPTED
     except BrokenPipeError:
         # The reader of our output has left. What is still buffered has nowhere to go, not even at exit.
@@ -120,17 +121,7 @@ def _parser() -> argparse.ArgumentParser:
     stability.add_argument("case", metavar="CASE", help="case file with a flexible wheel, friction and creepage")
     stability.set_defaults(command=_stability)
 
-    roughness = commands.add_parser("roughness", help="levels of measured roughness, compared with a limit")
-    roughness.add_argument("file", metavar="FILE", help="positions along and heights, one column for each line")
-    roughness.add_argument("--on", choices=("rail", "wheel"), default="rail", help="left out: rail")
-    roughness.add_argument("--wheel-radius", type=float, metavar="M", help="rolling radius in m; with --on wheel")
-    roughness.add_argument("--limit", metavar="NAME", default="iso3095-2013-limit", help="name of a spectrum")
-    roughness.add_argument("--segment", type=float, default=4.0, metavar="M", help="segment length in m; left out: 4")
-    roughness.add_argument("--raw", action="store_true", help="keep spikes and pits as measured")
-    roughness.add_argument(
-        "--output", metavar="DIR", default=".", help="folder of the files; left out: the current one"
-    )
-    roughness.set_defaults(command=_roughness)
+    add_evaluations(commands, case_help)
 
     schema = commands.add_parser("schema", help="print the JSON schema of case files")
     schema.set_defaults(command=_schema)
@@ -144,24 +135,11 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _say(text: str) -> None:
-    print(text, file=sys.stderr)
-
-
 def _refuse(error: Exception) -> int:
-    _say(f"error: {error}")
+    say(f"error: {error}")
     for note in getattr(error, "__notes__", ()):
-        _say(note)
+        say(note)
     return _ERROR
-
-
-def _case_of(options: argparse.Namespace, *, quiet: bool = False) -> Case:
-    if options.case is not None:
-        return load_case(options.case)
-    case = parse_case(default_case_text(), source=_DEFAULT_CASE)
-    if not quiet:
-        _say(f'no case given: the default case, "{case.title}" (see wheelrail default-case)')
-    return case
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -169,7 +147,7 @@ def _run(options: argparse.Namespace) -> int:
     from wheelrail.run import run_case
 
     quiet = options.quiet
-    case = _case_of(options, quiet=quiet)
+    case = case_of(options, quiet=quiet)
     if options.duration is not None:
         data = case.to_dict()
         data["simulation"]["duration"] = options.duration
@@ -177,7 +155,7 @@ def _run(options: argparse.Namespace) -> int:
     path = Path(options.output if options.output is not None else case.output.file)
     check_target(path)
     if not options.resume and not quiet and is_interrupted(path):
-        _say(f"{path} holds an interrupted run, which will be replaced; --resume would continue it")
+        say(f"{path} holds an interrupted run, which will be replaced; --resume would continue it")
     planned = round(case.simulation.duration * case.simulation.speed / case.simulation.dx)
     with (
         progress_bar("Green's functions", quiet=quiet) as built,
@@ -188,7 +166,7 @@ def _run(options: argparse.Namespace) -> int:
         case_name = "" if options.case is None else f" {options.case}"
         target = "" if options.output is None else f" --output {options.output}"
         duration = "" if options.duration is None else f" --duration {options.duration:g}"
-        _say(
+        say(
             f"interrupted at {summary.steps * summary.dt:.6g} s of {case.simulation.duration:g} s; the "
             f"{summary.steps} steps up to there are in {path}\n"
             f"to continue: wheelrail run{case_name}{target}{duration} --resume"
@@ -236,7 +214,7 @@ def _study(options: argparse.Namespace) -> int:
     path = Path(options.output if options.output is not None else f"{Path(options.study).stem}.nc")
     resume = options.resume or options.retry_failed
     if not resume and not quiet and is_unfinished(path):
-        _say(f"{path} has points of a study that is not complete, which will be replaced; --resume would continue it")
+        say(f"{path} has points of a study that is not complete, which will be replaced; --resume would continue it")
     with progress_bar("points", total=len(study.points), unit="points", quiet=quiet) as reached:
         summary = run_study(
             study,
@@ -248,10 +226,10 @@ def _study(options: argparse.Namespace) -> int:
             progress=lambda _, finished: reached(finished),
         )
     for point, reason in summary.failures:
-        _say(f"failed: point {point.index + 1} ({point.label}): {reason}")
+        say(f"failed: point {point.index + 1} ({point.label}): {reason}")
     if summary.interrupted_by is not None:
         target = "" if options.output is None else f" --output {options.output}"
-        _say(
+        say(
             f"interrupted; {summary.finished} of {summary.points} points are finished and kept\n"
             f"to continue: wheelrail study {options.study}{target} --resume"
         )
@@ -265,7 +243,7 @@ def _build(options: argparse.Namespace) -> int:
     from fmu_src.build import build_fmu, describe_fmu
     from fmu_src.errors import SlaveError
 
-    case = _case_of(options)
+    case = case_of(options)
     try:
         with progress_bar("Green's functions") as built:
             path = build_fmu(case, options.output, progress=built)
@@ -285,7 +263,7 @@ def _plot(options: argparse.Namespace) -> int:
     for path in plots.files:
         print(path)
     for reason in plots.left_out:
-        _say(f"left out: {reason}")
+        say(f"left out: {reason}")
     return 0
 
 
@@ -294,7 +272,7 @@ def _contact(options: argparse.Namespace) -> int:
     from wheelrail.interaction.simulate import step_count
     from wheelrail.plotting.contact_run import draw_contact
 
-    case = _case_of(options)
+    case = case_of(options)
     with progress_bar("Green's functions") as built:
         model = build_model(case, built)
     steps = options.step or [step_count(duration=case.simulation.duration, dt=model.dt)]
@@ -318,14 +296,14 @@ def _contact(options: argparse.Namespace) -> int:
 def _explain(options: argparse.Namespace) -> int:
     from wheelrail.explain import explain
 
-    print(explain(_case_of(options)))
+    print(explain(case_of(options)))
     return 0
 
 
 def _stability(options: argparse.Namespace) -> int:
     from wheelrail.analysis.sliding_case import case_stability
 
-    result = case_stability(load_case(options.case))
+    result = case_stability(case_of(options))
     print("wheel mode    alone        damping    in sliding contact   damping     growth")
     for mode in result.modes:
         line = f"({mode.name})".ljust(10) + f"{mode.frequency:9.1f} Hz {mode.damping_ratio:12.3e} "
@@ -358,26 +336,6 @@ def _stability(options: argparse.Namespace) -> int:
             f"warning: in steady rolling the tangential force is {result.saturation:.3f} of the friction limit; this "
             "check takes the contact as sliding fully, so it does not hold here"
         )
-    return 0
-
-
-def _roughness(options: argparse.Namespace) -> int:
-    from wheelrail.roughness_command import roughness_report
-
-    report = roughness_report(
-        options.file,
-        options.output,
-        on=options.on,
-        wheel_radius=options.wheel_radius,
-        limit=options.limit,
-        process=not options.raw,
-        segment_length=options.segment,
-    )
-    print(report.text)
-    for note in report.notes:
-        _say(note)
-    for path in report.files:
-        print(path)
     return 0
 
 

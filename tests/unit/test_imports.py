@@ -18,15 +18,16 @@ ALLOWED = {
     "track": {"numerics"},
     "excitation": {"numerics"},
     "contact": {"numerics"},
+    "profile": {"numerics"},
     "greens": {"numerics"},
     "case": {"numerics"},
 }
 FORBIDDEN_EVERYWHERE_BELOW = {"analysis", "study", "cli"}
-CORE = {"numerics", "wheel", "track", "excitation", "contact", "greens", "interaction"}
+CORE = {"numerics", "wheel", "track", "excitation", "contact", "profile", "greens", "interaction"}
 
 # Of the interaction, what turns a case into a model.
 PREPARATION = {
-    f"interaction/{name}.py" for name in ("build", "contacts", "friction", "tracks", "wheel_sources", "wheels")
+    f"interaction/{name}.py" for name in ("build", "contacts", "friction", "profiles", "tracks", "wheel_sources", "wheels")
 }
 
 # Shipped inside the FMU.
@@ -78,6 +79,7 @@ RUNTIME = [
     *(f"excitation/{name}.py" for name in ("corrugation", "irregularity", "lateral_interpolation", "out_of_round")),
     *(f"excitation/{name}.py" for name in ("coherent_spectrum", "coherent_synthesis", "surface_lines")),
     "excitation/synthesis.py",
+    *(f"profile/{name}.py" for name in ("contact_search", "curve", "profile_geometry", "undeformed_distance")),
     *(
         f"greens/{name}.py"
         for name in ("combined", "modal", "parts", "protocol", "recursion", "sampled", "track_response")
@@ -87,7 +89,7 @@ RUNTIME = [
     "numerics/third_octave_bands.py",
     *(
         f"{part}/__init__.py"
-        for part in ("analysis", "contact", "excitation", "greens", "interaction", "numerics", "track", "wheel")
+        for part in ("analysis", "contact", "excitation", "greens", "interaction", "numerics", "profile", "track", "wheel")
     ),
 ]
 

@@ -25,7 +25,7 @@ def profile_faults(contact: Mapping[str, Any]) -> Iterator[str]:
     if wheel is None and rail is None:
         if "rail_radius" not in contact:
             yield "contact.rail_radius: missing; give it, or wheel_profile, rail_profile and inclination (m)"
-        for key in ("conicity", "inclination", "yaw"):
+        for key in ("conicity", "inclination", "yaw", "wheel_profile_mirrored", "rail_profile_mirrored"):
             if contact.get(key):
                 yield f"contact.{key}: only used with wheel_profile and rail_profile; leave it out"
         return
@@ -36,6 +36,9 @@ def profile_faults(contact: Mapping[str, Any]) -> Iterator[str]:
         yield f"contact.inclination: missing; needed {_NEEDED} (rad)"
     if "wheel_transverse_radius" in contact:
         yield f"contact.wheel_transverse_radius: not used {_NEEDED}; leave it out"
+    for body, profile, names in (("wheel", wheel, WHEEL_PROFILES), ("rail", rail, RAIL_PROFILES)):
+        if f"{body}_profile_mirrored" in contact and any(_named(profile, name) for name in names):
+            yield f"contact.{body}_profile_mirrored: only for a profile from a file; leave it out"
     circular = _named(rail, "circular")
     if circular and "rail_radius" not in contact:
         yield 'contact.rail_radius: missing; rail_profile = "circular" needs it (m)'

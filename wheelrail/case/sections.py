@@ -56,6 +56,18 @@ class _ContactBase(Section):
         ".ban, Simpack .prr, text or CSV), relative to the folder of the case file",
         min_length=1,
     )
+    wheel_profile_mirrored: bool | None = Field(
+        default=None,
+        description="With a wheel_profile from a file: whether its y counts to the flange; left out: its flange tells",
+    )
+    rail_profile_mirrored: bool | None = Field(
+        default=None,
+        description="With a rail_profile from a file: whether its y counts to the gauge side, which its shape does not "
+        "tell; left out: it does not, and a note says so",
+    )
+    profile_smoothing: float = quantity(
+        "With profiles from files: wavelength at which smoothing halves an unevenness", "m", 5e-3, ge=1e-3, le=50e-3
+    )
     conicity: float | None = quantity(
         "With the wheel profile cone: slope of the tread, radius falling to the field side", "1", None, ge=0, le=0.5
     )
@@ -84,7 +96,10 @@ class _ContactBase(Section):
         "a point contact that follows a friction curve, with contact compliance; FASTSIM; Kalker's linear theory",
     )
     lateral_shift: float = quantity(
-        "Lateral displacement of the wheelset on the rail, positive to the field side", "m", 0.0
+        "Lateral displacement of the wheelset on the rail, positive to the field side; with profiles the position of "
+        "the wheel's tape circle from the middle of the rail's running surface (see wheelrail profiles)",
+        "m",
+        0.0,
     )
 
 

@@ -2,52 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple, Protocol
 
 from numpy.typing import NDArray
 
-__all__ = ["ConstantGeometry", "ContactGeometry", "OtherPoint", "Place"]
+__all__ = ["ConstantGeometry", "ContactGeometry", "ContactPlace", "NearPoint", "Place"]
 
 
-class OtherPoint(NamedTuple):
-    """A further point where the bodies come close.
+class NearPoint(Protocol):
+    """A further point where the bodies come close."""
 
-    Attributes
-    ----------
-    y_wheel, y_rail : float
-        Lateral positions on wheel and rail, m.
-    gap : float
-        Distance of the bodies there when they touch at the first point, m.
-    """
+    @property
+    def y_wheel(self) -> float:
+        """Lateral position on the wheel, m."""
+        ...
 
-    y_wheel: float
-    y_rail: float
-    gap: float
+    @property
+    def y_rail(self) -> float:
+        """Lateral position on the rail, m."""
+        ...
+
+    @property
+    def gap(self) -> float:
+        """Distance of the bodies there when they touch at the first point, m."""
+        ...
+
+
+class ContactPlace(Protocol):
+    """The place of first touch."""
+
+    @property
+    def y_wheel(self) -> float:
+        """Lateral position on the wheel from the tape circle, m, positive to the field side."""
+        ...
+
+    @property
+    def y_rail(self) -> float:
+        """Lateral position on the rail from its axis, m."""
+        ...
+
+    @property
+    def angle(self) -> float:
+        """Contact angle, rad: positive where the flange climbs."""
+        ...
+
+    @property
+    def rolling_radius(self) -> float:
+        """Radius of the wheel there, m."""
+        ...
+
+    @property
+    def others(self) -> Sequence[NearPoint]:
+        """Further points."""
+        ...
 
 
 class Place(NamedTuple):
-    """The place of first touch.
-
-    Attributes
-    ----------
-    y_wheel : float
-        Lateral position on the wheel from the tape circle, m, positive to the field side.
-    y_rail : float
-        Lateral position on the rail from its axis, m.
-    angle : float
-        Contact angle, rad: positive where the flange climbs.
-    rolling_radius : float
-        Radius of the wheel there, m.
-    others : tuple of OtherPoint
-    """
+    """A place of first touch without others, see `ContactPlace`."""
 
     y_wheel: float
     y_rail: float
     angle: float
     rolling_radius: float
-    others: tuple[OtherPoint, ...] = ()
+    others: tuple[()] = ()
 
 
 class ContactGeometry(Protocol):
@@ -63,7 +82,7 @@ class ContactGeometry(Protocol):
         """Whether `distance` gives the undeformed distance; else the contact model has its radii."""
         ...
 
-    def place(self, shift: float) -> Place:
+    def place(self, shift: float) -> ContactPlace:
         """Find the place of first touch for a lateral shift of the wheel on the rail, m."""
         ...
 

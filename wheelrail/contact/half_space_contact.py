@@ -131,15 +131,20 @@ class HalfSpaceContact:
         # The contact lies within the overlap of the undeformed bodies.
         depth = state.approach - float(distance.min())
         sizes = []
+        words = "is enough"
         for key, radius, step, count in (
             ("length", self.radius_x, grid.dx, grid.mx),
             ("width", self.radius_y, grid.dy, grid.my),
         ):
             half = max(math.sqrt(2.0 * radius * depth), 0.6 * count * step if self._touches(state, key) else 0.0)
+            if self.profiles:  # no radius tells how far they go on touching
+                if not self._touches(state, key):
+                    continue
+                half, words = 0.7 * count * step, "may be enough"
             sizes.append(f"contact.{key} = {(2 * math.ceil(half / step) + 3) * step:g} m")
         raise ContactGridError(
             f"the contact reaches the edge of the potential contact area, {grid.mx * grid.dx:g} m long and "
-            f"{grid.my * grid.dy:g} m wide; {' and '.join(sizes)} is enough"
+            f"{grid.my * grid.dy:g} m wide; {' and '.join(sizes)} {words}"
         )
 
     def _touches(self, state: NormalState, key: str) -> bool:

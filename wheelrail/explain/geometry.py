@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from wheelrail.case import Case
 from wheelrail.interaction.contacts import curvatures_of, geometry_of
+from wheelrail.interaction.profiles import profile_geometry_of
+from wheelrail.interaction.surfaces import STEEP
 
 __all__ = ["explain_geometry"]
 
-_STEEPEST = 0.1  # rad; beyond, forces normal to the contact and vertical ones differ by more than 0.5 %
 _ELSEWHERE = 5e-3  # m, between the contact and where a flexible body's receptance is that of
 
 
@@ -31,6 +32,8 @@ def explain_geometry(case: Case, approach: float, warnings: list[str]) -> list[s
         f"at a lateral shift of {1e3 * case.contact.lateral_shift:+g} mm",
         f"relative radii            {1.0 / along:.4g} m along, {1.0 / across:.4g} m across the rail",
     ]
+    if case.contact.wheel_profile is not None:
+        lines += [f"  {note}" for note in profile_geometry_of(case)[1]]
     if geometry.shaped:
         lines.append(f"contact angle             {place.angle:+.4f} rad; rolling radius {place.rolling_radius:.6g} m")
     for other in place.others:
@@ -43,7 +46,7 @@ def explain_geometry(case: Case, approach: float, warnings: list[str]) -> list[s
                 f"wheel and rail touch at a second place under the preload, {_mm(other.y_rail)} on the rail; "
                 'only a wide contact.width with normal = "half-space" can take it in'
             )
-    if abs(place.angle) > _STEEPEST:
+    if abs(place.angle) > STEEP:
         warnings.append(
             f"the contact angle is {place.angle:.3g} rad: the contact's normal force is taken for the vertical one, "
             f"which is {100.0 * 0.5 * place.angle**2:.1f} % less, and its lateral part is left out"

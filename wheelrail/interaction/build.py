@@ -18,6 +18,7 @@ from .friction import slip_friction_of, static_friction_of
 from .inputs import Inputs
 from .model import Model
 from .parameters import OWN_SEEDS, Parameters
+from .profiles import profile_geometry_of
 from .tracks import memory_of, track_of, track_response
 from .wheels import wheel_of, wheel_responses
 
@@ -64,6 +65,8 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
         sources.append(source)
         notes += remarks
     report["excitation"] = notes
+    if case.contact.wheel_profile is not None:
+        report["profiles"] = profile_geometry_of(case)[1]
     geometry = geometry_of(case)
     parameters = Parameters(
         speed=simulation.speed,

@@ -16,12 +16,25 @@ from ..contact.solution import NormalContact
 from ..contact.spring import HertzSpring, averaging_weights
 from ..errors import CaseError
 from ..excitation.view import ContactView
+from .profiles import profile_geometry_of
 
 __all__ = ["contact_of", "curvatures_of", "geometry_of", "hertz_of", "view_of"]
 
+_FLATTEST = 0.1  # 1/m; flatter contacts across the rail are no ellipses
+
 
 def geometry_of(case: Case) -> ContactGeometry:
-    """Where wheel and rail of a case touch."""
+    """Where wheel and rail of a case touch.
+
+    Raises
+    ------
+    DataFileError
+        If a profile can't be read.
+    ParameterError
+        If the profiles don't touch at the lateral shift.
+    """
+    if case.contact.wheel_profile is not None:
+        return profile_geometry_of(case)[0]
     on_wheel = getattr(case.wheel, "contact_position", None)
     on_rail = getattr(case.track, "contact_position", None)
     return ConstantGeometry(
@@ -32,7 +45,28 @@ def geometry_of(case: Case) -> ContactGeometry:
 
 
 def curvatures_of(case: Case) -> tuple[float, float]:
-    """Return the sums of wheel's and rail's curvatures in rolling and in lateral direction, 1/m."""
+    """Return the sums of wheel's and rail's curvatures in rolling and in lateral direction, 1/m.
+
+    Of profiles those at the place of first touch. Where they fit each other so closely that no ellipse is like the
+    contact, the half-space needs none, and gets a radius of 10 m for what only estimates.
+
+    Raises
+    ------
+    CaseError
+        If a Hertz contact or a bedding is to be made of such profiles.
+    """
+    if case.contact.wheel_profile is not None:
+        place = profile_geometry_of(case)[0].place(case.contact.lateral_shift)
+        if place.curvature_y < _FLATTEST and case.contact.normal != "half-space":
+            raise CaseError(
+                "contact.normal",
+                [
+                    f'"{case.contact.normal}" needs a contact like an ellipse; at lateral_shift = '
+                    f"{case.contact.lateral_shift:g} m the profiles have a relative curvature of "
+                    f'{place.curvature_y:.3g} 1/m across the rail (at least {_FLATTEST:g}); use "half-space"'
+                ],
+            )
+        return place.curvature_x, max(place.curvature_y, _FLATTEST)
     transverse = case.contact.wheel_transverse_radius
     assert case.contact.rail_radius is not None
     lateral = 1.0 / case.contact.rail_radius + (0.0 if transverse is None else 1.0 / transverse)
@@ -84,7 +118,8 @@ def contact_of(case: Case) -> NormalContact:
             poisson_ratio=contact.poisson_ratio,
         )
         curvature_x, curvature_y = curvatures_of(case)
-        return HalfSpaceContact(grid, 1.0 / curvature_x, 1.0 / curvature_y)
+        profiles = case.contact.wheel_profile is not None
+        return HalfSpaceContact(grid, 1.0 / curvature_x, 1.0 / curvature_y, profiles)
     nodes = 1 if contact.length is None else round(contact.length / dx)
     calibration = {
         "load": hertz.load,

@@ -25,6 +25,7 @@ from .model import Model
 from .parameters import is_finite_number
 from .start import start
 from .state import (
+    ANGLE,
     FORCE,
     FORCE_X,
     FORCE_Y,
@@ -39,7 +40,7 @@ from .state import (
     State,
 )
 from .step import step
-from .surfaces import missed_contact
+from .surfaces import STEEP, missed_contact, steep_contact
 
 __all__ = ["OUTPUT_NAMES", "RESIDUAL_LIMIT", "CoSimulation"]
 
@@ -102,7 +103,7 @@ class CoSimulation:
         self._inputs = self.model.start_inputs
         self._state: State | None = None
         self._stale = True
-        self._remarked = self._missed = False
+        self._remarked = self._missed = self._steep = False
         self._backup = np.empty(0)
         self._clear_clock()
 
@@ -186,7 +187,7 @@ class CoSimulation:
         self._largest = self._smallest = float(state.block[FORCE])
         self._worst = [float(state.block[place]) for place in LARGEST.values()]
         self._check_residual(float(state.block[RESIDUAL]))
-        self._check_missed(float(state.block[MISSED]))
+        self._check_place(float(state.block[MISSED]))
         if self.model.tangential is not None and not self._remarked:
             self.warnings += self.model.tangential.remarks
             self._remarked = True  # not again for every input that is set before the first step
@@ -267,7 +268,7 @@ class CoSimulation:
         self._largest, self._smallest = largest, smallest
         self._worst = worst
         self._check_residual(worst[places.index(RESIDUAL)])
-        self._check_missed(worst[places.index(MISSED)])
+        self._check_place(worst[places.index(MISSED)])
 
     def _slopes(self) -> tuple[float, ...] | None:
         """Slopes of the inputs over the last communication step, for linear extrapolation."""
@@ -285,10 +286,15 @@ class CoSimulation:
                 + (" (a pulling load has no equilibrium)" if self._inputs.wheel_force_z < 0.0 else "")
             )
 
-    def _check_missed(self, overlap: float) -> None:
+    def _check_place(self, overlap: float) -> None:
+        assert self._state is not None
+        angle = float(self._state.block[ANGLE])
         if overlap > 0.0 and not self._missed:
             self.warnings.append(missed_contact(overlap, self.steps))
-        self._missed = overlap > 0.0  # not again for every communication step that it lasts
+        if abs(angle) > STEEP and not self._steep:
+            self.warnings.append(steep_contact(angle, self.steps))
+        # Not again for every communication step that it lasts.
+        self._missed, self._steep = overlap > 0.0, abs(angle) > STEEP
 
     def output(self, name: str) -> float | int | bool:
         """Value of an output port at the present communication point.

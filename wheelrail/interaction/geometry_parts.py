@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from ..contact.geometry import ConstantGeometry, ContactGeometry
 from ..errors import ModelFileError
+from ..profile.profile_geometry import ProfileGeometry
 
 __all__ = ["geometry_from_parts"]
 
-_KINDS = {"constant": ConstantGeometry}
+_KINDS = {"constant": ConstantGeometry, "profiles": ProfileGeometry}
 
 
 def geometry_from_parts(meta: Mapping[str, Any], arrays: Mapping[str, NDArray]) -> ContactGeometry:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from time import perf_counter
 from typing import Any
@@ -17,9 +17,9 @@ from .cosimulation import COUNTS, LARGEST, OUTPUT_NAMES, REACHED, RESIDUAL_LIMIT
 from .inputs import Inputs
 from .model import Model
 from .start import height_for_load, start
-from .state import FORCE, FORCE_X, FORCE_Y, MISSED, RESIDUAL, RESULTS, SCALARS, State
+from .state import ANGLE, FORCE, FORCE_X, FORCE_Y, MISSED, RESIDUAL, RESULTS, SCALARS, State
 from .step import step
-from .surfaces import missed_contact
+from .surfaces import STEEP, missed_contact, steep_contact
 
 __all__ = ["BLOCK", "Simulation", "Statistics", "simulate", "stand_alone_inputs", "step_count"]
 
@@ -178,7 +178,7 @@ class Simulation:
         self.steps = step_count(duration=duration, dt=model.dt)
         self.statistics = Statistics() if statistics is None else statistics
         self._at_start = state is None
-        self._missed = False
+        self._said: set[Callable[[float, int], str]] = set()
         self.state = start(model, self.inputs) if state is None else state
         if self._at_start and model.tangential is not None:
             for remark in model.tangential.remarks:
@@ -217,7 +217,7 @@ class Simulation:
     def _block(self, rows: NDArray) -> dict[str, NDArray]:
         numbers = rows[:, 0].astype(np.int64)
         self._judge(numbers, rows[:, FORCE], rows[:, RESIDUAL])
-        self._look_for_missed(numbers, rows[:, MISSED])
+        self._judge_place(numbers, rows[:, MISSED], rows[:, ANGLE])
         block: dict[str, NDArray] = {
             "step": numbers,
             "time": numbers * self.model.dt,
@@ -250,11 +250,16 @@ class Simulation:
                 numbers[first] * self.model.dt,
             )
 
-    def _look_for_missed(self, numbers: NDArray, overlap: NDArray) -> None:
-        if not self._missed and np.any(overlap > 0.0):
-            first = int(np.argmax(overlap > 0.0))
-            _log.warning("%s", missed_contact(float(overlap[first]), int(numbers[first])))
-            self._missed = True  # once is enough; missed_overlap tells the rest
+    def _judge_place(self, numbers: NDArray, overlap: NDArray, angle: NDArray) -> None:
+        # Once is enough: missed_overlap and contact_angle tell the rest.
+        for word, found, values in (
+            (missed_contact, overlap > 0.0, overlap),
+            (steep_contact, np.abs(angle) > STEEP, angle),
+        ):
+            if word not in self._said and np.any(found):
+                first = int(np.argmax(found))
+                _log.warning("%s", word(float(values[first]), int(numbers[first])))
+                self._said.add(word)
 
     def collect(self) -> dict[str, NDArray]:
         """Run to the end and return the blocks joined; for runs that fit into memory."""

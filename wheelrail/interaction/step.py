@@ -106,7 +106,8 @@ def store_solution(state: State, solution: NormalSolution) -> None:
     """Put the results of the normal contact at their place in the state."""
     block = state.block
     place = state.surfaces.place
-    block[Y_WHEEL], block[Y_RAIL], block[ANGLE], block[ROLLING_RADIUS] = place[:4]
+    block[Y_WHEEL], block[Y_RAIL] = place.y_wheel, place.y_rail
+    block[ANGLE], block[ROLLING_RADIUS] = place.angle, place.rolling_radius
     block[POINTS], block[MISSED] = 1.0, 0.0
     if place.others:
         block[POINTS], block[MISSED] = state.surfaces.other_contacts(solution.approach)

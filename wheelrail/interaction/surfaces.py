@@ -9,11 +9,22 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.geometry import Place
+from ..contact.geometry import ContactPlace
 from .inputs import Inputs
 from .model import Model
 
-__all__ = ["Surfaces", "missed_contact", "total_shift"]
+__all__ = ["STEEP", "Surfaces", "missed_contact", "steep_contact", "total_shift"]
+
+STEEP = 0.15
+"""Contact angle in rad from which normal and vertical forces differ by more than a percent."""
+
+
+def steep_contact(angle: float, step: int) -> str:
+    """Word the message about a contact that is not nearly level; angle in rad."""
+    return (
+        f"the contact angle is {angle:.3g} rad at step {step}: the force normal to the contact is taken for the "
+        "vertical one, and its lateral part is left out"
+    )
 
 
 def missed_contact(overlap: float, step: int) -> str:
@@ -40,13 +51,13 @@ class Surfaces:
 
     Attributes
     ----------
-    place : Place
+    place : ContactPlace
         Where the bodies touch first at the last shift.
     """
 
     __slots__ = ("_distance", "_line", "_offsets", "_rows", "_shift", "_surface", "place")
 
-    place: Place
+    place: ContactPlace
 
     def __init__(self, model: Model) -> None:
         contact = model.contact

@@ -34,6 +34,8 @@ def read_text(path: Path) -> str:
     """
     try:
         size = path.stat().st_size
+        if not (path.is_file() or path.is_dir()):  # a pipe would never end
+            raise DataFileError(f"{path}: is no ordinary file")
         if size > _MOST_BYTES:
             shown = f"{size / 1e9:.1f} GB; at most {_MOST_BYTES / 1e9:.0f} GB are read"
             raise DataFileError(f"{path}: {shown}; cut the file")

@@ -37,6 +37,10 @@ FAULTS = [
         'contact.conicity: not used with wheel_profile = "s1002"; leave it out',
     ),
     (
+        {**PROFILES, "contact.rail_profile_mirrored": True},
+        "contact.rail_profile_mirrored: only for a profile from a file; leave it out",
+    ),
+    (
         {**PROFILES, "contact.wheel_transverse_radius": 0.4},
         "contact.wheel_transverse_radius: not used with profiles; leave it out",
     ),

@@ -1,8 +1,10 @@
+import os
+
 import numpy as np
 import pytest
 
 from wheelrail.errors import DataFileError
-from wheelrail.numerics.column_file import read_columns
+from wheelrail.numerics.column_file import read_columns, read_text
 
 KNOWN = ("name", "frequency", "shape_x", "shape")
 HERTZ = {"Hz": 1.0, "kHz": 1e3}
@@ -92,3 +94,11 @@ def test_files_that_are_no_text(tmp_path):
         read_columns(written(tmp_path, "frequency [Hz]\n1\n", encoding="utf-16"), known=KNOWN)
     with pytest.raises(DataFileError, match="zero bytes"):
         read_columns(written(tmp_path, "a\0b"), known=KNOWN)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes in folders")
+def test_a_pipe_is_refused_at_once(tmp_path):
+    pipe = tmp_path / "pipe.csv"
+    os.mkfifo(pipe)
+    with pytest.raises(DataFileError, match="no ordinary file"):
+        read_text(pipe)
