@@ -47,8 +47,7 @@ def cycles(run):
     found = stick_slip(
         slip_fraction=part["slip_fraction"], in_contact=part["force_z"], force=part["force_y"], dt=run.dt
     )
-    # A cycle lasts only some steps, so that its length is known to a step: a tenth or two of it.
-    return {"cycle_frequency": found.frequency if found.cycles > 100 and found.spread < 0.25 else 0.0}
+    return {"cycle_frequency": found.frequency if found.regular() else 0.0}
 
 
 def squeal_study(vary, *, transient):

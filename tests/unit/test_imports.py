@@ -27,7 +27,8 @@ CORE = {"numerics", "wheel", "track", "excitation", "contact", "profile", "green
 
 # Of the interaction, what turns a case into a model.
 PREPARATION = {
-    f"interaction/{name}.py" for name in ("build", "contacts", "friction", "profiles", "tracks", "wheel_sources", "wheels")
+    f"interaction/{name}.py"
+    for name in ("build", "contacts", "friction", "profiles", "tracks", "wheel_sources", "wheels")
 }
 
 # Shipped inside the FMU.
@@ -89,7 +90,17 @@ RUNTIME = [
     "numerics/third_octave_bands.py",
     *(
         f"{part}/__init__.py"
-        for part in ("analysis", "contact", "excitation", "greens", "interaction", "numerics", "profile", "track", "wheel")
+        for part in (
+            "analysis",
+            "contact",
+            "excitation",
+            "greens",
+            "interaction",
+            "numerics",
+            "profile",
+            "track",
+            "wheel",
+        )
     ),
 ]
 

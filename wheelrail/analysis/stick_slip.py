@@ -35,12 +35,16 @@ class StickSlip:
     cycles : int
         Whole cycles: from one beginning of full slip to the next, with stick of at least a part of the area between.
     frequency : float
-        One over the median period of the cycles, Hz; NaN with less than one whole cycle.
+        One over the mean period of the cycles without those that are half as long again as the median, or shorter by
+        as much (a cycle missed, or one too many), Hz; NaN with less than one whole cycle.
     spread : float
         Standard deviation of the cycles' periods over their mean; NaN with less than two whole cycles.
+    steps : float
+        Mean length of a cycle in time steps; NaN with less than one whole cycle.
     periodicity : float
-        Largest value of the force's autocorrelation coefficient between half and one and a half periods: 1 for a force
-        that repeats; NaN with less than two whole cycles.
+        Largest value of the force's autocorrelation coefficient between half a period and ten and a half, so that it is
+        found also where a period is no whole number of steps: 1 for a force that repeats; NaN with less than two whole
+        cycles.
     """
 
     shares: dict[str, float]
@@ -48,6 +52,7 @@ class StickSlip:
     cycles: int
     frequency: float
     spread: float
+    steps: float
     periodicity: float
 
     @property
@@ -56,8 +61,11 @@ class StickSlip:
         return self.cycles >= 1
 
     def regular(self, *, spread: float = 0.1, periodicity: float = 0.8) -> bool:
-        """Whether cycles repeat: three at least, of like period, under a force that repeats."""
-        return self.cycles >= 3 and self.spread <= spread and self.periodicity >= periodicity
+        """Whether cycles repeat: three at least, of like period, under a force that repeats.
+
+        A period of 4.4 steps shows as one of 4 or 5: half a step of spread is that of the grid.
+        """
+        return self.cycles >= 3 and self.spread <= spread + 0.5 / self.steps and self.periodicity >= periodicity
 
 
 def slip_states(slip_fraction: ArrayLike, *, in_contact: ArrayLike) -> NDArray:
@@ -125,15 +133,22 @@ def stick_slip(*, slip_fraction: ArrayLike, in_contact: ArrayLike, force: ArrayL
     onsets = _onsets(states)
     periods = np.diff(onsets) * dt
     count = len(periods)
-    frequency = 1.0 / float(np.median(periods)) if count else math.nan
+    frequency = 1.0 / _typical(periods) if count else math.nan
     return StickSlip(
         shares=shares,
         episodes=episodes,
         cycles=count,
         frequency=frequency,
         spread=float(periods.std() / periods.mean()) if count > 1 else math.nan,
+        steps=1.0 / (frequency * dt),
         periodicity=_periodicity(tangential, period=1.0 / (frequency * dt)) if count > 1 else math.nan,
     )
+
+
+def _typical(periods: NDArray) -> float:
+    """Mean of the periods that are like most."""
+    median = float(np.median(periods))
+    return float(np.mean(periods[(periods > median / 1.5) & (periods < 1.5 * median)]))
 
 
 def _onsets(states: NDArray) -> NDArray:
@@ -144,10 +159,10 @@ def _onsets(states: NDArray) -> NDArray:
 
 
 def _periodicity(force: NDArray, *, period: float) -> float:
-    """Largest autocorrelation coefficient around one period (in steps), each lag over its own overlap."""
+    """Largest autocorrelation coefficient from half a period (in steps) on, each lag over its own overlap."""
     signal = force - force.mean()
     count = len(signal)
-    last = min(round(1.5 * period), count // 2)
+    last = min(round(10.5 * period), count // 2)
     first = min(max(round(0.5 * period), 1), last)
     # By FFT, padded so that nothing wraps round.
     power = np.abs(np.fft.rfft(signal, 2 * count)) ** 2
