@@ -78,7 +78,10 @@ RUNTIME = [
     ),
     *(f"excitation/{name}.py" for name in ("line", "sampled_heights", "sinusoid", "sources", "spectrum_line")),
     *(f"excitation/{name}.py" for name in ("corrugation", "irregularity", "lateral_interpolation", "out_of_round")),
-    *(f"excitation/{name}.py" for name in ("coherent_spectrum", "coherent_synthesis", "surface_lines")),
+    *(
+        f"excitation/{name}.py"
+        for name in ("coherent_spectrum", "coherent_synthesis", "spectrum_recipe", "surface_lines")
+    ),
     "excitation/synthesis.py",
     *(f"profile/{name}.py" for name in ("contact_search", "curve", "profile_geometry", "undeformed_distance")),
     *(
