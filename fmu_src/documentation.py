@@ -56,6 +56,7 @@ def documentation(
             track=str(start["track_model"]),
             friction=str(start["friction_law"]),
             lateral=lateral,
+            geometry=str(start["contact_geometry"]),
         ),
         guiding=_guiding(str(start["tangential_contact_model"]), wheel=str(start["wheel_model"])),
         inputs=_table("input", start),
@@ -67,9 +68,11 @@ def documentation(
     )
 
 
-def _without_effect(tangential: str, *, wheel: str, track: str, friction: str, lateral: bool) -> str:
+def _without_effect(tangential: str, *, wheel: str, track: str, friction: str, lateral: bool, geometry: str) -> str:
     """Say which ports this FMU accepts or shows although its model has no use for them."""
     inputs, outputs = [] if lateral else ["wheel_y", "lateral_shift", "lateral_position"], []
+    if geometry.startswith("wheel "):
+        inputs.append("lateral_position")
     if tangential == "none":
         inputs += ["creepage_x", "creepage_y", "creepage_spin", "friction_coefficient"]
         outputs += ["force_x", "force_y", "force_x_mean", "force_y_mean"]
@@ -82,8 +85,12 @@ def _without_effect(tangential: str, *, wheel: str, track: str, friction: str, l
     if tangential == "none" or track != "waveguide":
         outputs += ["rail_disp_x", "rail_disp_y"]
     accepted, zero = (", ".join(f"<code>{name}</code>" for name in names) for names in (inputs, outputs))
-    text = f"Its model has no use for {accepted}, which have no effect"
-    return f"{text}; {zero} read 0." if outputs else f"{text}."
+    sentences = []
+    if inputs:
+        sentences.append(f"Its model has no use for {accepted}: no effect on any force.")
+    if outputs:
+        sentences.append(f"{zero} read 0.")
+    return " ".join(sentences)
 
 
 def _guiding(tangential: str, *, wheel: str) -> str:

@@ -299,7 +299,13 @@ _OUTPUTS = (
         nominal=1e3,
     ),
     Variable(
-        "approach", "output", "Real", "rigid approach of the bodies at the nominal point", "m", "Length", nominal=1e-4
+        "approach",
+        "output",
+        "Real",
+        "rigid approach of the bodies at the nominal point, from first touch at the lateral shift of the case",
+        "m",
+        "Length",
+        nominal=1e-4,
     ),
     Variable("in_contact", "output", "Boolean", "true while wheel and rail touch"),
     Variable("distance", "output", "Real", "rolled distance since the start", "m", "Length", nominal=1.0),
@@ -381,7 +387,14 @@ _PARAMETERS = (
         "inputs within a communication step: hold or linear",
         enumeration="InputExtrapolation",
     ),
-    Variable("roughness_scale", "parameter", "Real", "factor on the combined roughness", "1", nominal=1.0),
+    Variable(
+        "roughness_scale",
+        "parameter",
+        "Real",
+        "factor on the combined roughness; of flats and joints under a Hertz contact on the path of a rigid wheel",
+        "1",
+        nominal=1.0,
+    ),
     Variable(
         "random_seed", "parameter", "Integer", "seed of random roughness; -1: the seeds of the case", minimum=-1.0
     ),
@@ -483,7 +496,7 @@ _GEOMETRY = (
         minimum=0.0,
         nominal=1e-5,
     ),
-    Variable("contact_geometry", "constant", "String", "profiles of wheel and rail"),
+    Variable("contact_geometry", "constant", "String", "shape of wheel and rail where they touch"),
 )
 
 VARIABLES: tuple[Variable, ...] = _INPUTS + _OUTPUTS + _PARAMETERS + _CALCULATED + _CONSTANTS + _FRICTION + _GEOMETRY

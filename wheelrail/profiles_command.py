@@ -70,8 +70,16 @@ def profiles_report(
     check_folder(folder)
     if case.contact.wheel_profile is None:
         raise ParameterError(
-            "contact.wheel_profile", None, "the case has none; give wheel_profile, rail_profile and inclination"
+            "contact.wheel_profile", "", "the case has no profiles; give wheel_profile, rail_profile and inclination"
         )
+    for option, value, low, high in (
+        ("--largest", largest, 1e-3, 0.05),
+        ("--gauge", gauge, 0.5, 2.0),
+        ("--back-spacing", flange_back_spacing, 0.5, 2.0),
+        ("--back-position", flange_back_position, -0.2, 0.0),
+    ):
+        if not low <= value <= high:
+            raise ParameterError(option, value, f"must be {low:g} to {high:g} m")
     geometry, notes = profile_geometry_of(case)
     count = max(round(largest / _STEP), 1)
     lateral = np.arange(-count, count + 1) * _STEP

@@ -33,7 +33,8 @@ def test_table_and_figures(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([str(CASE.parent / "smooth.toml")], "the case has none"),
+        ([str(CASE.parent / "smooth.toml")], "the case has no profiles"),
+        ([str(CASE), "--gauge", "1435"], "--gauge = 1435.0 is refused: must be 0.5 to 2 m"),
         ([str(CASE), "--gauge", "1.2"], "touch"),
         ([str(CASE), "--output", "nowhere"], "no such folder"),
     ],

@@ -66,8 +66,12 @@ def _unused(label: str, table: Mapping[str, Any], keys: tuple[str, ...], where: 
 
 def _position_faults(label: str, excitation: Mapping[str, Any], key: str) -> Iterator[str]:
     positions = excitation.get(key)
-    if isinstance(positions, list) and len(set(map(str, positions))) < len(positions):
+    if isinstance(positions, list) and len(set(map(repr, map(_as_float, positions)))) < len(positions):
         yield f"{label}.{key}: a position is given twice"
+
+
+def _as_float(value: object) -> object:
+    return float(value) if isinstance(value, int | float) and abs(value) < 1e9 else value
 
 
 def _spectrum_faults(label: str, excitation: Mapping[str, Any], dx: float | None) -> Iterator[str]:
@@ -110,6 +114,8 @@ def _flat_faults(label: str, excitation: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _joint_faults(label: str, excitation: Mapping[str, Any]) -> Iterator[str]:
+    if not any(excitation.get(key) for key in ("gap", "step", "dip")):
+        yield f"{label}: nothing of a joint is given; give gap, step or dip (m)"
     if excitation.get("dip", 0) and "dip_length" not in excitation:
         yield f"{label}.dip_length: missing; a dip needs its length on each side (m)"
     if excitation.get("step", 0) and "spacing" in excitation and "step_length" not in excitation:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from wheelrail.case.fields import Section, as_tuple, quantity
+from wheelrail.case.fields import LateralPosition, Section, as_tuple, quantity
 from wheelrail.case.irregularities import Corrugation, Dent, OutOfRound, RailJoint, WheelFlat
 
 __all__ = ["SPECTRUM_NAMES", "Excitation", "Measured", "Sinusoid", "Spectrum"]
@@ -29,7 +29,7 @@ class Measured(Section):
     column: Annotated[int, Field(ge=1)] | Annotated[str, Field(min_length=1)] | None = Field(
         default=None, description="Height column of the file, by name or by number from 1; left out: the first"
     )
-    lateral: Annotated[tuple[float, ...], BeforeValidator(as_tuple)] | None = Field(
+    lateral: Annotated[tuple[LateralPosition, ...], BeforeValidator(as_tuple)] | None = Field(
         default=None,
         description="Positions of the file's lines across, m, one for each height column, if its header does not name "
         "them (as y=-4mm_um): from the tape circle or the rail's axis, + to the field side. With positions all lines "
@@ -79,7 +79,7 @@ class Spectrum(Section):
         None,
         gt=0,
     )
-    lines: Annotated[tuple[float, ...], BeforeValidator(as_tuple)] | None = Field(
+    lines: Annotated[tuple[LateralPosition, ...], BeforeValidator(as_tuple)] | None = Field(
         default=None,
         description="Positions of several parallel lines across, m, each with the given spectrum: from the tape circle "
         "or the rail's axis, + to the field side; left out: one line, the same all across",
@@ -89,6 +89,7 @@ class Spectrum(Section):
         default=None,
         description="With lines: decay c of their coherence gamma = exp(-c k |dy|) with the wavenumber k and the "
         'distance dy; 0: all lines the same; "none": none',
+        json_schema_extra={"allowed": 'a number >= 0, or "none"'},
     )
 
 

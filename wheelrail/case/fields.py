@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["Section", "allowed_words", "as_tuple", "quantity", "unit_of"]
+LateralPosition = Annotated[float, Field(ge=-0.1, le=0.1)]
+"""Position across a wheel or rail, m; none is wider."""
+
+__all__ = ["LateralPosition", "Section", "allowed_words", "as_tuple", "quantity", "unit_of"]
 
 
 class Section(BaseModel):

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
-from wheelrail.case.fields import Section, as_tuple, quantity
+from wheelrail.case.fields import LateralPosition, Section, as_tuple, quantity
 
 __all__ = ["Corrugation", "Dent", "OutOfRound", "RailJoint", "WheelFlat"]
 
@@ -29,7 +29,7 @@ class WheelFlat(Section):
         "lines (negative: missing material), relative to the folder of the case file",
         min_length=1,
     )
-    lateral: Annotated[tuple[float, ...], BeforeValidator(as_tuple)] | None = Field(
+    lateral: Annotated[tuple[LateralPosition, ...], BeforeValidator(as_tuple)] | None = Field(
         default=None,
         description="measured: positions of the file's lines across, m, from the tape circle, + to the field side, if "
         "its header does not name them (as y=-4mm_um)",
@@ -52,7 +52,9 @@ class RailJoint(Section):
     step_length: float | None = quantity(
         "Length over which the rail ahead of a step comes back to level; left out: it does not", "m", None, gt=0, le=50
     )
-    spacing: float | None = quantity("Length after which the joint comes again; left out: one joint", "m", None, gt=0)
+    spacing: float | None = quantity(
+        "Distance of joints, before and after this one; left out: one joint", "m", None, gt=0
+    )
 
 
 class Dent(Section):
@@ -65,7 +67,9 @@ class Dent(Section):
     width: float | None = quantity("Width across; left out: the same all across", "m", None, gt=0, le=0.2)
     position: float | None = quantity("rail only: its middle along the rail, from the sleeper at 0", "m", None)
     angle: float | None = quantity(f"wheel only: {_ANGLE[0].lower()}{_ANGLE[1:]}", "rad", None)
-    lateral_position: float = quantity("Its middle across, from the tape circle or the rail's axis", "m", 0.0)
+    lateral_position: float = quantity(
+        "Its middle across, from the tape circle or the rail's axis", "m", 0.0, ge=-0.1, le=0.1
+    )
 
 
 class Corrugation(Section):

@@ -72,7 +72,8 @@ class _ContactBase(Section):
         "With the wheel profile cone: slope of the tread, radius falling to the field side", "1", None, ge=0, le=0.5
     )
     inclination: float | None = quantity(
-        "With profiles: angle by which the rail leans towards the track's centre, 1:40 = 0.025",
+        "With profiles: angle by which the rail leans towards the track's centre, 1:40 = 0.025; a rail profile that "
+        "was measured in the track leans already: 0",
         "rad",
         None,
         ge=-0.2,

@@ -54,6 +54,11 @@ class ContactPlace(Protocol):
         ...
 
     @property
+    def lift(self) -> float:
+        """How much higher the wheel rides than at the reference shift, m."""
+        ...
+
+    @property
     def others(self) -> Sequence[NearPoint]:
         """Further points."""
         ...
@@ -66,6 +71,7 @@ class Place(NamedTuple):
     y_rail: float
     angle: float
     rolling_radius: float
+    lift: float = 0.0
     others: tuple[()] = ()
 
 

@@ -111,7 +111,7 @@ class HalfSpaceContact:
         if len(contact) == 0:
             return NormalSolution(0.0, state.approach, 0.0, 0.0, 0.0, 0.0, 0.0, state.iterations, state.residual, state)
         if grid.edge[contact].any():
-            self._refuse(state, distance)
+            self._refuse(state, distance, rough=bool(np.ptp(roughness) > 0.0))
         iy, ix = np.divmod(contact, grid.mx)
         return NormalSolution(
             force=state.force,
@@ -126,7 +126,7 @@ class HalfSpaceContact:
             field=state,
         )
 
-    def _refuse(self, state: NormalState, distance: NDArray) -> None:
+    def _refuse(self, state: NormalState, distance: NDArray, *, rough: bool) -> None:
         grid = self.half_space
         # The contact lies within the overlap of the undeformed bodies.
         depth = state.approach - float(distance.min())
@@ -136,11 +136,13 @@ class HalfSpaceContact:
             ("length", self.radius_x, grid.dx, grid.mx),
             ("width", self.radius_y, grid.dy, grid.my),
         ):
-            half = max(math.sqrt(2.0 * radius * depth), 0.6 * count * step if self._touches(state, key) else 0.0)
-            if self.profiles:  # no radius tells how far they go on touching
-                if not self._touches(state, key):
+            touches = self._touches(state, key)
+            if self.profiles or rough:  # no radius tells how far they go on touching
+                if not touches:
                     continue
                 half, words = 0.7 * count * step, "may be enough"
+            else:
+                half = max(math.sqrt(2.0 * radius * depth), (0.6 if touches else 0.5) * count * step)
             sizes.append(f"contact.{key} = {(2 * math.ceil(half / step) + 3) * step:g} m")
         raise ContactGridError(
             f"the contact reaches the edge of the potential contact area, {grid.mx * grid.dx:g} m long and "

@@ -20,7 +20,7 @@ from wheelrail.excitation.measured import (
 from wheelrail.excitation.surface_lines import SurfaceLines
 from wheelrail.excitation.table_file import LENGTH_UNITS
 
-__all__ = ["HeightLines", "read_height_lines", "read_measured_lines"]
+__all__ = ["HeightLines", "names_positions", "read_height_lines", "read_measured_lines"]
 
 _POSITION = re.compile(r"(?:^|[\s_])y\s*=\s*(?P<number>\S+?)\s*(?P<unit>mm|m)$", re.IGNORECASE)
 _FARTHEST = 0.1  # m from the axis of the rail or the tape circle: the width of a wheel or a rail head is less
@@ -48,6 +48,12 @@ class HeightLines:
     names: tuple[str, ...]
 
 
+def names_positions(path: Path | str) -> bool:
+    """Whether the header of a file names the positions of its lines across; `DataFileError` as `read_height_lines`."""
+    table = read_height_table(path)
+    return _positions_across(f"{table.path}, line {table.header_line}", table.names[1:]) is not None
+
+
 def read_height_lines(path: Path | str, *, lateral: Sequence[float] | None = None) -> HeightLines:
     """Read and check all lines of a file.
 
@@ -63,7 +69,7 @@ def read_height_lines(path: Path | str, *, lateral: Sequence[float] | None = Non
     Returns
     -------
     HeightLines
-        Sorted by position, if positions are known.
+        Sorted by position, if positions are known; else the first line alone.
 
     Raises
     ------
@@ -91,7 +97,7 @@ def read_height_lines(path: Path | str, *, lateral: Sequence[float] | None = Non
         if len(np.unique(positions)) < len(positions):
             raise ParameterError("lateral", list(lateral), "no position may appear twice")
     x = positions_of(table)
-    order = list(range(len(names))) if positions is None else [int(i) for i in np.argsort(positions)]
+    order = [0] if positions is None else [int(i) for i in np.argsort(positions)]
     heights = np.array([heights_of(table, 1 + i) for i in order])
     return HeightLines(x, heights, None if positions is None else positions[order], tuple(names[i] for i in order))
 

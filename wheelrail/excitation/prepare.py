@@ -11,7 +11,7 @@ import numpy as np
 
 from wheelrail.errors import DataFileError, ParameterError
 from wheelrail.excitation.measured import read_measured_line
-from wheelrail.excitation.measured_lines import read_height_lines, read_measured_lines
+from wheelrail.excitation.measured_lines import names_positions, read_measured_lines
 from wheelrail.excitation.named_spectra import SpectrumTable, named_spectrum, read_spectrum
 from wheelrail.excitation.prepare_irregularities import (
     prepare_corrugation,
@@ -112,7 +112,7 @@ def _measured(
         raise ParameterError(
             "lateral", list(lateral), f"column = {column!r} takes one line of the file; give one of them"
         )
-    if lateral is not None or (column is None and read_height_lines(file).lateral is not None):
+    if lateral is not None or (column is None and names_positions(file)):
         return read_measured_lines(
             file, dx=dx, on=on, wheel_radius=wheel_radius, beyond_end=beyond_end, lateral=lateral
         )

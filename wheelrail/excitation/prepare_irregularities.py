@@ -39,18 +39,24 @@ def _surface(
     origin: float,
     period: float | None,
     name: str,
+    key: str,
     dx: float,
     view: ContactView,
 ) -> Irregularity:
     """Source of a shape, as the contact model looks at it; ``heights`` of shape (lines, n)."""
+    if period is not None and positions[-1] - positions[0] > period:
+        reach = float(positions[-1] - positions[0])
+        raise ParameterError(
+            key, reach, f"the {name} takes {reach:.4g} m, more than the {period:.4g} m until it comes again"
+        )
     if view.trajectory:
         paths = [rigid_path(positions, line, radius=view.radius) for line in heights]
-        positions, heights = paths[0][0], np.array([path for _, path in paths])
+        if period is not None and any(at[-1] - at[0] > period for at, _ in paths):
+            paths = [_one_period(positions, line, period, view.radius) for line in heights]
+        # Each line has a path of its own length; beyond its ends a path is level.
+        positions = np.unique(np.concatenate([at for at, _ in paths]))
+        heights = np.array([np.interp(positions, at, path) for at, path in paths])
         name = f"{name}, path of a rigid wheel"
-    if period is not None and positions[-1] - positions[0] > period:
-        raise ParameterError(
-            "length", positions[-1] - positions[0], f"the {name} must fit into its period of {period:.4g} m"
-        )
     return Irregularity(
         positions=positions,
         heights=heights,
@@ -64,6 +70,20 @@ def _surface(
     )
 
 
+def _one_period(
+    positions: np.ndarray, heights: np.ndarray, period: float, radius: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Path over one of many shapes that are so close to each other that their paths overlap."""
+    inside = slice(0, -1) if positions[-1] - positions[0] >= period else slice(None)
+    copies = [positions[inside] + shift * period for shift in (-1, 0, 1)]
+    at, path = rigid_path(np.concatenate(copies), np.tile(heights[inside], 3), radius=radius)
+    half = 0.5 * period
+    kept = np.concatenate([[-half], at[np.abs(at) < half], [half]])
+    cut = np.interp(kept, at, path)
+    cut[-1] = cut[0]
+    return kept, cut
+
+
 def _turn(wheel_radius: float | None, what: str) -> float:
     if wheel_radius is None or not wheel_radius > 0.0:
         raise ParameterError("wheel_radius", wheel_radius, f"{what} needs the rolling radius, above 0 m")
@@ -71,7 +91,7 @@ def _turn(wheel_radius: float | None, what: str) -> float:
 
 
 def _passing(origin: float, what: str, period: float | None) -> str:
-    again = "" if period is None else f" and every {period:.6g} m from there"
+    again = "" if period is None else f", and every {period:.6g} m before and after"
     return f"{what}: its middle passes the contact point at x = {origin:.6g} m{again}"
 
 
@@ -119,6 +139,7 @@ def prepare_wheel_flat(
         origin=origin,
         period=turn,
         name=f"{shape} wheel flat",
+        key="length",
         dx=dx,
         view=view,
     )
@@ -143,7 +164,14 @@ def prepare_rail_joint(
         raise ParameterError("dip_length", dip_length, "a dip needs its length on each side of the joint")
     if spacing is not None and step != 0.0 and step_length is None:
         raise ParameterError("step_length", step_length, "a step that repeats has to run back to level")
-    positions, heights = rail_joint(gap=gap, step=step, dip=dip, dip_length=dip_length or 1.0, step_length=step_length)
+    positions, heights = rail_joint(
+        gap=gap,
+        step=step,
+        dip=dip,
+        dip_length=dip_length or 1.0,
+        step_length=step_length,
+        reach=0.1 if spacing is None else min(0.1, 0.5 * spacing),
+    )
     source = _surface(
         positions,
         heights[None, :],
@@ -152,6 +180,7 @@ def prepare_rail_joint(
         origin=position,
         period=spacing,
         name="rail joint",
+        key="spacing",
         dx=dx,
         view=view,
     )
@@ -193,6 +222,7 @@ def prepare_dent(
         origin=origin,
         period=period,
         name=f"dent on the {on}",
+        key="length",
         dx=dx,
         view=view,
     )

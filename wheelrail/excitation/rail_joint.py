@@ -23,7 +23,7 @@ _EDGE = 1e-6  # m; a vertical face takes this length
 
 
 def rail_joint(
-    *, gap: float, step: float, dip: float, dip_length: float, step_length: float | None
+    *, gap: float, step: float, dip: float, dip_length: float, step_length: float | None, reach: float = _NEAR
 ) -> tuple[np.ndarray, np.ndarray]:
     """Heights of the rail around a joint.
 
@@ -39,15 +39,17 @@ def rail_joint(
         L on each side, m; no effect without a dip.
     step_length : float or None
         Length over which the rail ahead comes back to level, with the square of the distance, m; None: it does not.
+    reach : float
+        Length of rail on each side that is given finely, m; half the distance of joints at most.
 
     Returns
     -------
     positions, heights : ndarray, shape (n,)
         m.
     """
-    longest = max(_NEAR, dip_length if dip > 0.0 else 0.0, 0.0 if step_length is None else step_length)
-    near = np.arange(0.0, _NEAR + 0.5 * _SPACING, _SPACING)
-    far = np.linspace(_NEAR, longest, max(round((longest - _NEAR) / _WIDE_SPACING), 1) + 1)
+    longest = max(reach, dip_length if dip > 0.0 else 0.0, 0.0 if step_length is None else step_length)
+    near = np.arange(0.0, reach, _SPACING)
+    far = np.linspace(reach, longest, max(round((longest - reach) / _WIDE_SPACING), 1) + 1)
     edge = 0.5 * max(gap, _EDGE)
     side = np.unique(np.concatenate([[edge], near[near > edge], far[far > edge]]))
     sag = -dip * np.maximum(1.0 - side / dip_length, 0.0) ** 2 if dip > 0.0 else np.zeros_like(side)
@@ -55,7 +57,7 @@ def rail_joint(
     if step_length is not None:
         raised = step * np.maximum(1.0 - side / step_length, 0.0) ** 2
     behind, ahead = sag[::-1], sag + raised
-    if gap == 0.0:
+    if gap <= 4.0 * _EDGE:  # faces touch
         return np.concatenate([-side[::-1], side]), np.concatenate([behind, ahead])
     bottom = min(behind[-1], ahead[0]) - _GAP_DEPTH
     inside = np.array([-edge + _EDGE, edge - _EDGE])

@@ -21,6 +21,9 @@ import numpy as np
 
 __all__ = ["ContactView", "rigid_path"]
 
+_FINE = 1e-4  # m; touching between two of these points costs at most their distance squared over 8 R, 3 nm
+_GENTLE = 0.02  # curvature over that of the wheel, up to which a shape is nearly straight under the contact
+
 
 class ContactView(NamedTuple):
     """What a contact model makes of large shapes.
@@ -59,16 +62,27 @@ def rigid_path(positions: np.ndarray, heights: np.ndarray, *, radius: float) -> 
     path : ndarray, shape (m,)
         max over x of r(X + x) - x^2 / 2R, m.
     """
-    reach = math.sqrt(2.0 * radius * float(np.ptp(heights)))
-    spacing = max(float(np.diff(positions).min()), 2e-5)
-    extra = math.ceil(reach / spacing) + 1
-    first, last = positions[0] - extra * spacing, positions[-1] + extra * spacing
-    fine = np.linspace(first, last, math.ceil((last - first) / spacing) + 1)
-    fine = np.union1d(fine, positions)
-    shape = np.interp(fine, positions, heights)
-    path = np.empty_like(fine)
-    for k, x in enumerate(fine):
-        low, high = np.searchsorted(fine, (x - reach * 1.01, x + reach * 1.01))
-        near = slice(low, max(high, low + 1))
-        path[k] = float(np.max(shape[near] - (fine[near] - x) ** 2 / (2.0 * radius)))
-    return fine, path
+    reach = 1.01 * math.sqrt(2.0 * radius * float(np.ptp(heights)))
+    first, last = positions[0] - reach, positions[-1] + reach
+    middle = 0.5 * (positions[1:] + positions[:-1])
+    slope = np.diff(heights) / np.diff(positions)
+    bends = np.abs(np.diff(slope)) > _GENTLE / radius * np.diff(middle)
+    sharp = np.concatenate([positions[1:-1][bends], positions[[0, -1]]])
+    fine = np.arange(math.floor(first / _FINE), math.ceil(last / _FINE) + 1) * _FINE
+    near = _within(fine, np.sort(sharp), reach)
+    at = np.union1d(fine[near], positions)
+    close = _within(at, np.sort(sharp), reach)
+    shape = np.interp(at, positions, heights)
+    # Where the shape bends gently the wheel touches beside the lowest point by R r', and rides R r'^2 / 2 higher.
+    path = shape + 0.5 * radius * np.interp(at, middle, slope, left=0.0, right=0.0) ** 2
+    for k in np.flatnonzero(close):
+        low, high = np.searchsorted(at, (at[k] - reach, at[k] + reach))
+        touching = slice(low, max(high, low + 1))
+        path[k] = float(np.max(shape[touching] - (at[touching] - at[k]) ** 2 / (2.0 * radius)))
+    return at, path
+
+
+def _within(at: np.ndarray, places: np.ndarray, reach: float) -> np.ndarray:
+    """Whether positions lie within ``reach`` of any of the places, which increase."""
+    after = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
+    return np.minimum(np.abs(at - places[after - 1]), np.abs(at - places[after])) <= reach

@@ -41,7 +41,12 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
             lines.append(f"{number}. {entry.type}: {name}, on the {entry.on}")
         else:
             lines.append(f"{number}. {entry.type}")
-        if isinstance(source, SurfaceLines | CoherentSpectrum):
+        if source.across and case.contact.normal != "half-space":
+            warnings.append(
+                f'excitation #{number}: it differs across the contact, but contact.normal = "{case.contact.normal}" '
+                'looks at the line at the contact point alone; "half-space" sees its width'
+            )
+        elif isinstance(source, SurfaceLines | CoherentSpectrum):
             warnings += [f"excitation #{number}: {line}" for line in _beyond_the_lines(case, source, hertz)]
         covered = source.covered()
         if covered is not None:

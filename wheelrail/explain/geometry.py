@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from wheelrail.case import Case
 from wheelrail.interaction.contacts import curvatures_of, geometry_of
 from wheelrail.interaction.profiles import profile_geometry_of
@@ -9,6 +11,7 @@ from wheelrail.interaction.surfaces import STEEP
 
 __all__ = ["explain_geometry"]
 
+_NEAR = 1e-4  # m, gap of further points that are worth a line
 _ELSEWHERE = 5e-3  # m, between the contact and where a flexible body's receptance is that of
 
 
@@ -37,11 +40,14 @@ def explain_geometry(case: Case, approach: float, warnings: list[str]) -> list[s
     if geometry.shaped:
         lines.append(f"contact angle             {place.angle:+.4f} rad; rolling radius {place.rolling_radius:.6g} m")
     for other in place.others:
+        if other.gap > max(_NEAR, approach):
+            continue
         lines.append(
             f"further point             {_mm(other.y_wheel)} on the wheel, {_mm(other.y_rail)} on the rail, "
             f"{1e6 * other.gap:.3g} um apart at first touch"
         )
-        if other.gap < approach:
+        width = case.contact.width if case.contact.normal == "half-space" else None
+        if other.gap < approach and (width is None or abs(other.y_rail - place.y_rail) > 0.5 * width):
             warnings.append(
                 f"wheel and rail touch at a second place under the preload, {_mm(other.y_rail)} on the rail; "
                 'only a wide contact.width with normal = "half-space" can take it in'
@@ -49,7 +55,7 @@ def explain_geometry(case: Case, approach: float, warnings: list[str]) -> list[s
     if abs(place.angle) > STEEP:
         warnings.append(
             f"the contact angle is {place.angle:.3g} rad: the contact's normal force is taken for the vertical one, "
-            f"which is {100.0 * 0.5 * place.angle**2:.1f} % less, and its lateral part is left out"
+            f"which is {100.0 * (1.0 - math.cos(place.angle)):.1f} % less, and its lateral part is left out"
         )
     for name, body, at in (("wheel", case.wheel, place.y_wheel), ("track", case.track, place.y_rail)):
         given = getattr(body, "contact_position", None)

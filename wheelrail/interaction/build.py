@@ -56,12 +56,12 @@ def _build(case: Case, progress: Callable[[float], None] | None) -> Model:
     track, facts = track_response(case, directions=directions, progress=progress)
     if track is not None:
         report["track"] = facts
-    sources, notes = [], []
+    sources, notes, view = [], [], view_of(case)
     for entry in case.excitation:
         keys = entry.model_dump(exclude_none=True)
         if "file" in keys:
             keys["file"] = case.data_path(keys["file"])
-        source, remarks = prepare_source(dx=simulation.dx, wheel_radius=case.wheel.radius, view=view_of(case), **keys)
+        source, remarks = prepare_source(dx=simulation.dx, wheel_radius=case.wheel.radius, view=view, **keys)
         sources.append(source)
         notes += remarks
     report["excitation"] = notes

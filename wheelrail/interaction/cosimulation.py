@@ -103,7 +103,7 @@ class CoSimulation:
         self._inputs = self.model.start_inputs
         self._state: State | None = None
         self._stale = True
-        self._remarked = self._missed = self._steep = False
+        self._remarked = self._missed = self._steep = self._away = False
         self._backup = np.empty(0)
         self._clear_clock()
 
@@ -187,7 +187,7 @@ class CoSimulation:
         self._largest = self._smallest = float(state.block[FORCE])
         self._worst = [float(state.block[place]) for place in LARGEST.values()]
         self._check_residual(float(state.block[RESIDUAL]))
-        self._check_place(float(state.block[MISSED]))
+        self._check_place(float(state.block[MISSED]), abs(float(state.block[ANGLE])))
         if self.model.tangential is not None and not self._remarked:
             self.warnings += self.model.tangential.remarks
             self._remarked = True  # not again for every input that is set before the first step
@@ -241,6 +241,7 @@ class CoSimulation:
         totals, places = [0.0, 0.0, 0.0], list(LARGEST.values())
         largest, smallest = -math.inf, math.inf
         worst = [0.0] * len(LARGEST)
+        steepest = 0.0
         try:
             with one_thread():
                 for _ in range(count):
@@ -254,6 +255,7 @@ class CoSimulation:
                     totals = [total + force for total, force in zip(totals, forces, strict=True)]
                     largest, smallest = max(largest, forces[2]), min(smallest, forces[2])
                     worst = [max(before, float(block[place])) for before, place in zip(worst, places, strict=True)]
+                    steepest = max(steepest, abs(float(block[ANGLE])))
                     if recorder is not None:
                         rows.append((state.step * model.dt, *forces))
             if recorder is not None:
@@ -268,7 +270,7 @@ class CoSimulation:
         self._largest, self._smallest = largest, smallest
         self._worst = worst
         self._check_residual(worst[places.index(RESIDUAL)])
-        self._check_place(worst[places.index(MISSED)])
+        self._check_place(worst[places.index(MISSED)], steepest)
 
     def _slopes(self) -> tuple[float, ...] | None:
         """Slopes of the inputs over the last communication step, for linear extrapolation."""
@@ -286,15 +288,20 @@ class CoSimulation:
                 + (" (a pulling load has no equilibrium)" if self._inputs.wheel_force_z < 0.0 else "")
             )
 
-    def _check_place(self, overlap: float) -> None:
-        assert self._state is not None
-        angle = float(self._state.block[ANGLE])
+    def _check_place(self, overlap: float, angle: float) -> None:
         if overlap > 0.0 and not self._missed:
             self.warnings.append(missed_contact(overlap, self.steps))
-        if abs(angle) > STEEP and not self._steep:
+        if angle > STEEP and not self._steep:
             self.warnings.append(steep_contact(angle, self.steps))
         # Not again for every communication step that it lasts.
-        self._missed, self._steep = overlap > 0.0, abs(angle) > STEEP
+        self._missed, self._steep = overlap > 0.0, angle > STEEP
+        away = self._inputs.lateral_shift != self.model.start_inputs.lateral_shift
+        if away and not self._away and self.model.geometry.shaped and self.model.contact.rows == 1:
+            self.warnings.append(
+                "the contact keeps the radii of the case's lateral_shift: a Hertz spring and a Winkler bedding follow "
+                "a live lateral_shift in height alone; a half-space follows it in shape"
+            )
+            self._away = True
 
     def output(self, name: str) -> float | int | bool:
         """Value of an output port at the present communication point.

@@ -37,7 +37,7 @@ class Parameters:
     input_extrapolation : {"hold", "linear"}
         Inputs within a communication step.
     roughness_scale : float
-        Factor on all excitation.
+        Factor on all excitation; of flats and joints under a Hertz contact on the path of a rigid wheel.
     random_seed : int
         Seed of all random lines; -1 leaves each its own of the case file.
     record : bool

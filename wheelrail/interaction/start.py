@@ -79,7 +79,7 @@ def start(model: Model, inputs: Inputs) -> State:
     block[RAIL], block[WHEEL] = rail[2], wheel[2]
     if tangential is not None:
         block[RAIL_X], block[RAIL_Y], block[WHEEL_X], block[WHEEL_Y] = rail[0], rail[1], wheel[0], wheel[1]
-    store_solution(state, solution)
+    store_solution(model, state, solution)
     store_tangential(model, state, tangential)
     if model.track is not None:
         history = model.track.history(model.start_index)

@@ -102,15 +102,15 @@ def store_tangential(model: Model, state: State, solution: TangentialSolution | 
         state.tangential[:] = solution.memory
 
 
-def store_solution(state: State, solution: NormalSolution) -> None:
+def store_solution(model: Model, state: State, solution: NormalSolution) -> None:
     """Put the results of the normal contact at their place in the state."""
     block = state.block
     place = state.surfaces.place
     block[Y_WHEEL], block[Y_RAIL] = place.y_wheel, place.y_rail
     block[ANGLE], block[ROLLING_RADIUS] = place.angle, place.rolling_radius
-    block[POINTS], block[MISSED] = 1.0, 0.0
+    block[POINTS], block[MISSED] = float(solution.force > 0.0), 0.0
     if place.others:
-        block[POINTS], block[MISSED] = state.surfaces.other_contacts(solution.approach)
+        block[POINTS], block[MISSED] = state.surfaces.contacts(model, solution.approach, solution.force)
     if solution.field is not None:
         state.normal[:] = solution.field.pressure
     block[FORCE] = solution.force
@@ -138,7 +138,8 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     Raises
     ------
     WheelrailError
-        If the excitation ends, the contact leaves its grid or the force is not finite.
+        If the excitation ends, wheel and rail don't touch at the lateral shift, the contact leaves its grid or the
+        force is not finite.
     """
     block = state.block
     number = int(block[STEP]) + 1
@@ -219,7 +220,7 @@ def step(model: Model, state: State, inputs: Inputs) -> None:
     block[RAIL] = rail
     if tangential is not None:
         block[WHEEL_X], block[WHEEL_Y], block[RAIL_X], block[RAIL_Y] = wheel_x, wheel_y, rail_x, rail_y
-    store_solution(state, solution)
+    store_solution(model, state, solution)
     store_tangential(model, state, tangential)
     if track is not None:
         contact_force = state.force

@@ -31,7 +31,8 @@ def missed_contact(overlap: float, step: int) -> str:
     """Word the message about a contact that is not computed; overlap in m."""
     return (
         f"wheel and rail also touch outside of the potential contact area (step {step}, overlap {1e6 * overlap:.3g} um "
-        "without deformation): what this second contact bears is left out; a wider contact.width may take it in"
+        "without deformation): what this second contact bears is left out; a half-space with a wider contact.width may "
+        "take it in"
     )
 
 
@@ -55,7 +56,7 @@ class Surfaces:
         Where the bodies touch first at the last shift.
     """
 
-    __slots__ = ("_distance", "_line", "_offsets", "_rows", "_shift", "_surface", "place")
+    __slots__ = ("_distance", "_index", "_level", "_line", "_offsets", "_rows", "_shift", "_surface", "place")
 
     place: ContactPlace
 
@@ -68,36 +69,64 @@ class Surfaces:
         self._surface = np.zeros((contact.rows if several else 1, contact.nodes))
         self._shift: float | None = None
         self._distance: NDArray | None = None
+        self._index, self._level = 0, 0.0
 
     def move(self, model: Model, shift: float) -> None:
-        """Find the place of contact for a lateral shift; nothing is done if it is the last one."""
+        """Find the place of contact for a lateral shift; nothing is done if it is the last one.
+
+        Parameters
+        ----------
+        model : Model
+        shift : float
+            m.
+
+        Raises
+        ------
+        ParameterError
+            If wheel and rail don't touch there.
+        """
         if shift == self._shift:
             return
         geometry = model.active_geometry
-        place = geometry.place(shift)
+        place, distance = geometry.place(shift), None
         if geometry.shaped and self._rows > 1:
             x = (np.arange(len(self._line)) - len(self._line) // 2) * model.dx
-            self._distance = geometry.distance(shift, x, self._offsets)
-        self.place = place
+            distance = geometry.distance(shift, x, self._offsets)
+        self._shift = None  # whatever interrupts the next lines, they will be done again
+        self.place, self._distance = place, distance
         self._shift = shift
 
     def smooth(self) -> NDArray:
         """Heights without roughness at the last shift, m."""
-        return np.zeros(len(self._line)) if self._distance is None else -self._distance
+        return np.full(len(self._line), self.place.lift) if self._distance is None else -self._distance
 
-    def other_contacts(self, approach: float) -> tuple[int, float]:
-        """Count the points that touch when the bodies approach by ``approach`` (m), the first one included.
+    def contacts(self, model: Model, approach: float, force: float) -> tuple[int, float]:
+        """Count the places where the bodies overlap in the present step.
+
+        Parameters
+        ----------
+        model : Model
+        approach : float
+            m.
+        force : float
+            N; at the first place.
 
         Returns
         -------
         points : int
         missed : float
-            Largest overlap of the undeformed bodies at points outside of the contact model's grid, m.
+            Largest overlap of the undeformed bodies at places outside of the contact model's grid, m.
         """
-        points, missed = 1, 0.0
+        points, missed = int(force > 0.0), 0.0
         reach = float(self._offsets[-1])
+        height = np.zeros((1, 1))
         for other in self.place.others:
-            overlap = approach - other.gap
+            height.fill(0.0)
+            for source in model.lines:
+                if source.across:
+                    source.add_surface(self._index, np.array([other.y_wheel]), np.array([other.y_rail]), height)
+            rough = self._level + model.parameters.roughness_scale * float(height[0, 0])
+            overlap = approach + self.place.lift + rough - other.gap
             if overlap > 0.0:
                 points += 1
                 if abs(other.y_rail - self.place.y_rail) > reach:
@@ -129,6 +158,9 @@ class Surfaces:
         scale = model.parameters.roughness_scale
         if scale != 1.0:
             line *= scale
+        self._index, self._level = index, float(line[len(line) // 2])
+        if self._distance is None and self.place.lift:
+            line += self.place.lift
         if not across and self._distance is None:
             return line
         surface.fill(0.0)

@@ -138,7 +138,12 @@ def _line(axis: Axes, shifts: NDArray, values: NDArray, jumps: NDArray, colour: 
 
 
 def _others(axis: Axes, shifts: NDArray, places: Sequence[Place]) -> None:
-    points = [(shift, other.y_wheel) for shift, place in zip(shifts, places, strict=True) for other in place.others]
+    points = [
+        (shift, other.y_wheel)
+        for shift, place in zip(shifts, places, strict=True)
+        for other in place.others
+        if other.gap <= 1e-4
+    ]
     if points:
         x, y = 1e3 * np.array(points).T
         axis.plot(x, y, ".", color=ORANGE, markersize=3.0, label="further points on the wheel, gap below 0.1 mm")

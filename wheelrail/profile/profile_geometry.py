@@ -16,6 +16,9 @@ from .undeformed_distance import undeformed_distance
 __all__ = ["OtherPoint", "Place", "ProfileGeometry"]
 
 
+_FARTHEST = 1e-3  # m, gap of a further point: a heavy load, or a flat, brings it into contact
+
+
 class OtherPoint(NamedTuple):
     """A further point where the bodies come close.
 
@@ -49,6 +52,8 @@ class Place(NamedTuple):
         Relative principal curvatures along and across the rail, 1/m.
     ride_height : float
         Height of the wheel's axis over the middle of the rail's running surface, less the nominal radius, m.
+    lift : float
+        How much higher the wheel rides than at the reference shift, m.
     others : tuple of OtherPoint
         In the order of their gaps.
     """
@@ -60,6 +65,7 @@ class Place(NamedTuple):
     curvature_x: float
     curvature_y: float
     ride_height: float
+    lift: float
     others: tuple[OtherPoint, ...] = ()
 
 
@@ -130,7 +136,7 @@ class ProfileGeometry:
         """Find the place unless it is the last one: a run asks for the place and then for the distance."""
         found = self._last.get(shift)
         if found is None:
-            found = self.search.find(shift)
+            found = self.search.find(shift, tolerance=_FARTHEST)
             self._last.clear()
             self._last[shift] = found
         return found
@@ -163,6 +169,7 @@ class ProfileGeometry:
             curvature_x=point.curvature_x,
             curvature_y=point.curvature_y,
             ride_height=touch.ride_height,
+            lift=touch.ride_height - self._reference_height,
             others=tuple(OtherPoint(other.y_wheel, other.y_rail, other.gap) for other in touch.points[1:]),
         )
 

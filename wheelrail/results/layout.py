@@ -33,7 +33,10 @@ OUTPUTS: dict[str, tuple[str, str]] = {
     "pressure_max": ("Pa", "largest contact pressure"),
     "slip_fraction": ("1", "slipping share of the contact area"),
     "friction_power": ("W", "frictional power"),
-    "approach": ("m", "rigid approach of wheel and rail at the nominal contact point"),
+    "approach": (
+        "m",
+        "rigid approach of wheel and rail at the nominal contact point, from first touch at the case's lateral shift",
+    ),
     "in_contact": ("1", "1 while wheel and rail touch, 0 else"),
     "distance": ("m", "rolled distance since the start"),
     "solver_iterations": ("1", "evaluations of the contact law"),

@@ -100,7 +100,9 @@ def dataset_of(study: Study, load: Callable[[int], Outcome], *, digest: str) -> 
     for name in _names(study, outcomes):
         array = _joined(name, [outcome.values.get(name) for outcome in outcomes])
         extra, attributes = _description(name, array.ndim - 1)
-        dataset[name] = xr.Variable((*dims, *extra), array.reshape(*study.shape, *array.shape[1:]), attributes)
+        # A measure of one's own may be called like a varied key.
+        own = f"measured_{name}" if name in dataset.variables else name
+        dataset[own] = xr.Variable((*dims, *extra), array.reshape(*study.shape, *array.shape[1:]), attributes)
     return dataset
 
 

@@ -50,6 +50,9 @@ SQUEAL: dict[str, tuple[str, str]] = {
 }
 """Unit and long name of the squeal measures."""
 
+_RESERVED = frozenset({"status", "reason", "remarks", "point", "statistic", "band", "step", "time", "distance"})
+# Names in the data set beside those of measures.
+
 _NARROWEST_BAND = 1.5  # FFT lines: what a Hann window resolves
 
 
@@ -219,7 +222,13 @@ def _bands(values: NDArray, dt: float, settings: ThirdOctaveSettings) -> NDArray
 def _own(measure: Measure, run: PointRun, taken: Mapping[str, NDArray]) -> dict[str, NDArray]:
     own = {}
     for name, value in measure(run).items():
-        if not isinstance(name, str) or not name.isidentifier() or name in taken or name in OUTPUTS:
+        if (
+            not isinstance(name, str)
+            or not name.isidentifier()
+            or name in taken
+            or name in OUTPUTS
+            or name in _RESERVED
+        ):
             raise ParameterError("measure", name, "names must be identifiers that the data set does not use already")
         own[name] = np.asarray(value, dtype=float)
     return own

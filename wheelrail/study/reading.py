@@ -121,6 +121,11 @@ class _StudyCheck:
         results = ResultsTable(self.data.get("results", {}), base_case, self._check).settings()
         base = self._with_set(base)
         columns, grid = self._columns(base)
+        for key in columns if seed is not None else ():
+            if key.startswith("excitation.") and key.endswith(".seed"):
+                self._check.faults.append(
+                    f"{key}: varied, but seed = {seed} gives every point seeds of its own; leave one of them out"
+                )
         self._stop_if_faulty()
         keys = tuple(columns)
         points = self._points(base, path, keys, combined(list(columns.values()), grid=grid), seed, results)

@@ -61,6 +61,8 @@ def _model_key(case: Case) -> str:
         data.pop(name, None)
     for section, key in _FREE:
         table: dict[str, Any] = data.get(section, {})
+        if key == "lateral_shift" and "wheel_profile" in table:
+            continue  # where profiles touch decides on radii and on what height counts from
         # A law's points are given by speeds and coefficients; it has no key "coefficient".
         table.pop(key, None)
         if not table:

@@ -66,12 +66,20 @@ def _data_files(study: Study) -> dict[str, str]:
     found: dict[str, str] = {}
     for point in study.points:
         data = point.case.to_dict()
-        data.pop("output", None)
+        for name in ("output", "title"):
+            data.pop(name, None)
         for text in _texts(data):
             path = point.case.data_path(text)
-            if text not in found and path.is_file():
+            if text not in found and _is_file(path):
                 found[text] = hashlib.blake2b(path.read_bytes(), digest_size=16).hexdigest()
     return found
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # too long for a name
+        return False
 
 
 def _texts(value: Any) -> Iterator[str]:

@@ -3,7 +3,7 @@ import pytest
 
 from wheelrail.errors import DataFileError, ParameterError
 from wheelrail.excitation.measured import read_measured_line
-from wheelrail.excitation.measured_lines import read_height_lines, read_measured_lines
+from wheelrail.excitation.measured_lines import names_positions, read_height_lines, read_measured_lines
 
 DX = 1e-3
 RADIUS = 0.46
@@ -135,3 +135,13 @@ def test_arguments_are_checked_as_for_a_single_line(tmp_path, keys, name):
     path, *_ = three(tmp_path)
     with pytest.raises(ParameterError, match=f"^{name} ="):
         read_measured_lines(path, **({"dx": DX, "on": "rail", "wheel_radius": RADIUS, "beyond_end": "stop"} | keys))
+
+
+def test_columns_that_are_not_used_may_hold_anything(tmp_path):
+    """A file of one line, with the gauge beside it: nothing says where columns lie, so the first is the line."""
+    path = tmp_path / "log.csv"
+    path.write_text("x_m,rail_um,gauge_mm\n" + "\n".join(f"{i / 1000},{i % 7},1435" for i in range(50)))
+    assert not names_positions(path)
+    lines = read_height_lines(path)
+    assert lines.heights.shape == (1, 50)
+    assert lines.lateral is None

@@ -128,7 +128,7 @@ def test_angle_says_where_the_flat_comes_down():
         out[first] = one[0]
     lowest = np.flatnonzero(out < -0.9999e-3)
     assert abs(lowest[0] * 1e-3 - math.pi * R) < 1e-3
-    assert any("x = 1.44513 m and every 2.89027 m" in note for note in notes)
+    assert any("x = 1.44513 m, and every 2.89027 m" in note for note in notes)
 
 
 def flat_file(path, *, lines=1, tilt=0.0, reach=0.08):

@@ -30,6 +30,15 @@ poisson_ratio = 0.3
 [load]
 preload = 65e3
 coupling = "{coupling}"
+{excitation}
+"""
+BUMP = """
+[[excitation]]
+type = "dent"
+on = "rail"
+depth = -0.2e-3
+length = 2.0
+position = 0.0
 """
 GRID = "dy = 1e-3\nlength = 21e-3\nwidth = {width}e-3"
 ROUND = "rail_radius = 0.3"
@@ -38,9 +47,13 @@ S1002 = 'wheel_profile = "s1002"\nrail_profile = "60e1"\ninclination = 0.025\nla
 RIGID = 'model = "rigid"\nradius = 0.46'
 
 
-def model(shape, *, width=19, coupling="load", wheel=RIGID, normal="half-space"):
+def model(shape, *, width=19, coupling="load", wheel=RIGID, normal="half-space", excitation=""):
     grid = GRID.format(width=width) if normal == "half-space" else "length = 21e-3"
-    return build_model(parse_case(CASE.format(shape=shape, grid=grid, coupling=coupling, wheel=wheel, normal=normal)))
+    return build_model(
+        parse_case(
+            CASE.format(shape=shape, grid=grid, coupling=coupling, wheel=wheel, normal=normal, excitation=excitation)
+        )
+    )
 
 
 def outputs(built, **inputs):
@@ -168,3 +181,33 @@ def test_model_file(tmp_path):
     a, b = (simulate(m, duration=0.002, record=["force_z", "pressure_max"]).collect() for m in (built, again))
     for name in a:
         np.testing.assert_array_equal(a[name], b[name])
+
+
+def test_a_live_shift_counts_a_second_contact_as_one_from_the_start():
+    """Whatever height the approach counts from, and whatever lies all across both places."""
+    seen = set()
+    for reference in (2e-3, 1.75e-3, 0.0, -5e-3):
+        for excitation in ("", BUMP):
+            built = model(S1002.format(shift=reference), width=41, excitation=excitation)
+            run = outputs(built, lateral_shift=2e-3)
+            seen.add((run.output("contact_points"), round(run.output("missed_overlap") * 1e9)))
+    ((points, _),) = {(points, 0) for points, _ in seen}
+    assert points == 2
+    assert len({overlap // 10 for _, overlap in seen}) <= 2  # 10 nm
+
+
+def test_nothing_touches_where_the_wheel_is_lifted():
+    run = outputs(model(ROUND, coupling="displacement"), wheel_z=-1e-3)
+    assert (run.output("force_z"), run.output("contact_points")) == (0.0, 0)
+
+
+def test_a_hertz_contact_rises_with_a_live_shift_and_says_what_it_keeps():
+    hertz = model(S1002.format(shift=-5e-3), normal="hertz", coupling="displacement")
+    run = outputs(hertz, wheel_z=6e-5)
+    assert not run.warnings
+    start_force = run.output("force_z")
+    rise = hertz.geometry.place(-6e-3).lift
+    assert rise < -5e-6
+    moved = outputs(hertz, lateral_shift=-6e-3, wheel_z=6e-5 - rise)
+    assert moved.output("force_z") == pytest.approx(start_force, rel=1e-12)
+    assert any("keeps the radii" in warning for warning in moved.warnings)

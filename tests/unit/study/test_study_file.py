@@ -154,3 +154,10 @@ def test_unreadable_study_files(tmp_path, content, words):
         load_study(tmp_path / "study.toml")
     with pytest.raises(CaseError, match="no such file"):
         load_study(tmp_path / "none.toml")
+
+
+def test_seeds_of_the_study_and_varied_ones_exclude_each_other(study_of):
+    with pytest.raises(
+        CaseError, match=r"excitation\.2\.seed: varied, but seed = 7 gives every point seeds of its own"
+    ):
+        study_of('seed = 7\n[vary]\n"excitation.2.seed" = [1, 2]')

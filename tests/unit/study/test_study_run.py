@@ -289,3 +289,25 @@ def test_command(study_of, capsys):
     assert "1 done, 0 failed" in out
     assert "--resume would continue it" in err
     assert main(["study", "none.toml"]) == 2
+
+
+def test_a_measure_does_not_hide_what_the_data_set_has(study_of, tmp_path):
+    def clumsy(run):
+        return {"load_preload": 3.0} if run.case.load.preload == 50e3 else {"status": 1.0}
+
+    study = study_of('[vary]\n"load.preload" = [50e3, 60e3]')
+    summary = run_study(study, tmp_path / "study.nc", workers=0, measure=clumsy)
+    ((point, reason),) = summary.failures
+    assert point.case.load.preload == 60e3
+    assert "measure = 'status'" in reason
+    with xr.open_dataset(tmp_path / "study.nc") as data:
+        assert list(data["load_preload"].values) == [50e3, 60e3]
+        assert data["measured_load_preload"].values[0] == 3.0
+        assert list(data["status"].values) == [0, 1]
+
+
+def test_a_long_title_is_no_file_name(study_of, tmp_path):
+    base = tmp_path / "base.toml"
+    base.write_text(base.read_text().replace('title = "small"', f'title = "{"long " * 100}"'))
+    study = study_of('[vary]\n"load.preload" = [50e3]')
+    assert run_study(study, tmp_path / "study.nc", workers=0).complete

@@ -90,3 +90,25 @@ def test_a_friction_table_is_not_free(study_of):
         cases.append(case_from_dict(data))
     points = [type(point)(point.index, "", case) for point, case in zip(study.points, cases, strict=True)]
     assert len(groups_of(points)) == 2
+
+
+@pytest.mark.parametrize("normal", ["hertz", "half-space"])
+def test_where_profiles_touch_decides_on_the_model(study_of, normal):
+    """A shift on profiles is more than an input: radii and the height that the approach counts from are those there."""
+    study = study_of(
+        f"""
+[set]
+"contact.normal" = "{normal}"
+"contact.rail_profile" = "circular"
+"contact.wheel_profile" = "cone"
+"contact.conicity" = 0.05
+"contact.inclination" = 0.025
+"contact.dy" = 5e-3
+"contact.width" = 45e-3
+[vary]
+"contact.lateral_shift" = [-5e-3, -9e-3]
+"""
+    )
+    assert len(groups_of(study.points)) == 2
+    shapes = [build_model(point.case).geometry.place(-9e-3).lift for point in study.points]
+    assert shapes[0] != shapes[1] == 0.0
