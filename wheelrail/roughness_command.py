@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from wheelrail.analysis.coherence import BandCoherence, roughness_coherence
 from wheelrail.analysis.roughness_evaluation import RoughnessEvaluation, evaluate_roughness
 from wheelrail.analysis.roughness_levels import SEGMENT_LENGTH, LimitComparison, compare_with_limit
-from wheelrail.errors import WheelrailError
+from wheelrail.errors import ParameterError, WheelrailError
 from wheelrail.excitation.measured_lines import read_height_lines
 from wheelrail.excitation.named_spectra import named_spectrum
 from wheelrail.plotting.force import nominal_frequency
@@ -91,6 +91,8 @@ def roughness_report(
         Unknown limit, surface, radius or segment length.
     """
     path, folder = Path(path), Path(folder)
+    if on == "rail" and wheel_radius is not None:
+        raise ParameterError("wheel_radius", wheel_radius, "only used with on = wheel (--on wheel)")
     table = named_spectrum(limit)
     if not folder.is_dir():
         raise WheelrailError(f"{folder}: no such folder; make it first")

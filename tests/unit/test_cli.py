@@ -223,3 +223,17 @@ def test_build_writes_the_fmu(capsys):
     assert main(["build", "small.toml"]) == 0
     assert capsys.readouterr().out.startswith("WheelRail.fmu: ")
     assert os.path.getsize("WheelRail.fmu") > 10_000
+
+
+def test_a_study_is_not_a_case_nor_a_case_a_study(tmp_path, capsys):
+    examples = Path(__file__).parents[2] / "examples"
+    assert main(["run", str(examples / "studies" / "speed_and_preload.toml"), "--output", str(tmp_path / "a.nc")]) == 2
+    assert "vary: unknown key; this is a study file: wheelrail study runs it" in capsys.readouterr().err
+    assert main(["study", str(examples / "cases" / "sine.toml"), "--output", str(tmp_path / "b.nc")]) == 2
+    assert "this is a case file: wheelrail run runs it" in capsys.readouterr().err
+
+
+def test_an_option_without_effect_is_refused(tmp_path, capsys):
+    line = Path(__file__).parents[2] / "examples" / "data" / "rail_roughness_sample.csv"
+    assert main(["roughness", str(line), "--wheel-radius", "0.46", "--output", str(tmp_path)]) == 2
+    assert "only used with on = wheel" in capsys.readouterr().err

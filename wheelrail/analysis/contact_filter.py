@@ -36,6 +36,7 @@ CONTACTS: dict[str, dict[str, str]] = {
 
 _REFERENCE = {"normal": "hertz", "prefilter": "none"}
 _LEAKAGE = 1e-2  # of the mean square of the strongest band nearby, at most
+_SHAPES = ("wheel-flat", "rail-joint", "dent")
 _FEWEST_LINES = 3.0  # of the Fourier transform in a band, or its level is chance
 
 
@@ -194,6 +195,11 @@ def contact_filter_of(
     _first_row(transient, dt=dt, count=int(simulation.duration / dt) + 1)
     if not case.excitation:
         raise ParameterError("case", case.title, "it has no [[excitation]]; there is nothing to filter")
+    shapes = [entry.type for entry in case.excitation if entry.type in _SHAPES]
+    if shapes:
+        raise ParameterError(
+            "excitation", shapes[0], "a contact filters roughness; leave flats, joints and dents out of the case"
+        )
     cases = {name: _with_contact(case, CONTACTS[name]) for name in contacts}
 
     def say(text: str) -> None:
@@ -215,6 +221,10 @@ def contact_filter_of(
         for force, reference, seen in zip(forces, references, rough, strict=True):
             one = contact_filter(force, reference, dt=dt, speed=simulation.speed, transient=transient, segment=segment)
             filters.append(replace(one, levels=np.where(seen(one.centres), one.levels, np.nan)))
+        if all(np.all(np.isnan(one.levels)) for one in filters):
+            raise ParameterError(
+                "case", case.title, "its roughness moves nothing in the run; there is nothing to filter"
+            )
         result[name] = mean_filter(filters)
     return result
 

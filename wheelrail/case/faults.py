@@ -185,6 +185,8 @@ def _unknown_section(name: str, value: object) -> str:
         homes = [section for section in Case.model_fields if is_known_key(section, name)]
         if homes:
             return f"{name}: unknown key; it belongs in a table: [{homes[0]}]"
+    if name in ("vary", "point"):
+        return f"{name}: unknown key; this is a study file: wheelrail study runs it"
     return f"{name}: unknown key; {did_you_mean(name, Case.model_fields)}allowed: {in_words(Case.model_fields)}"
 
 

@@ -97,7 +97,7 @@ def contact_over_shift_figure(geometry: ProfileGeometry, *, shifts: ArrayLike, t
     _line(positions, values, 1e3 * on_rail, jumps, INK, "on the rail, from its axis")
     _others(positions, values, places)
     positions.set_ylabel("Position / mm")
-    legend(positions, loc="lower left")
+    legend(positions, loc="best")
     _line(angle, values, np.degrees([place.angle for place in places]), jumps, BLUE)
     angle.set_ylabel("Contact angle / °")
     difference = np.array([place.rolling_radius for place in places]) - geometry.nominal_radius

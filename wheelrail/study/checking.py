@@ -24,6 +24,9 @@ class TableCheck:
 
     def known(self, table: Mapping[str, Any], allowed: tuple[str, ...], prefix: str) -> None:
         """Refuse keys that a table does not have."""
+        if not prefix and {"simulation", "wheel", "track"} <= set(table):
+            self.faults.append("this is a case file: wheelrail run runs it")
+            return
         for key in table:
             if key not in allowed:
                 hint = did_you_mean(str(key), allowed)

@@ -1,11 +1,13 @@
 """The contact filter effect of runs: levels over the reference, lines, and what is refused."""
 
+import tomllib
+
 import numpy as np
 import pytest
 
 from wheelrail.analysis.contact_filter import contact_filter, contact_filter_of, mean_filter
 from wheelrail.analysis.contact_filter_models import averaging_filter
-from wheelrail.case import parse_case
+from wheelrail.case import case_from_dict, default_case_text, parse_case
 from wheelrail.errors import CaseError, ParameterError
 from wheelrail.interaction.build import build_model, hertz_of
 
@@ -142,3 +144,10 @@ def test_refused(make):
         mean_filter([contact_filter(np.arange(n), np.arange(n), dt=1e-3, speed=1.0, transient=0.0) for n in (900, 90)])
     with pytest.raises(ValueError, match="at least"):
         mean_filter([])
+
+
+def test_flats_are_not_filtered():
+    data = tomllib.loads(default_case_text())
+    data["excitation"].append({"type": "wheel-flat", "shape": "rounded", "depth": 1e-3, "length": 0.1, "angle": 0.0})
+    with pytest.raises(ParameterError, match=r"excitation = 'wheel-flat'.*leave flats"):
+        contact_filter_of(case_from_dict(data), transient=0.05)
