@@ -40,7 +40,7 @@ RUNTIME = [
         f"interaction/{name}.py"
         for name in ("cosimulation", "inputs", "model", "model_file", "parameters", "start", "state", "step")
     ),
-    *(f"interaction/{name}.py" for name in ("geometry_parts", "surfaces")),
+    *(f"interaction/{name}.py" for name in ("geometry_parts", "place_watch", "surfaces")),
     *(
         f"contact/{name}.py"
         for name in ("bedding", "geometry", "newton", "parts", "solution", "spring", "tangential_models")

@@ -6,8 +6,8 @@ import math
 
 from wheelrail.case import Case
 from wheelrail.interaction.contacts import curvatures_of, geometry_of
+from wheelrail.interaction.place_watch import STEEP
 from wheelrail.interaction.profiles import profile_geometry_of
-from wheelrail.interaction.surfaces import STEEP
 
 __all__ = ["explain_geometry"]
 

@@ -23,6 +23,7 @@ from ..numerics.blas_threads import one_thread
 from .inputs import INPUT_NAMES, Inputs
 from .model import Model
 from .parameters import is_finite_number
+from .place_watch import PlaceWatch
 from .start import start
 from .state import (
     ANGLE,
@@ -40,7 +41,6 @@ from .state import (
     State,
 )
 from .step import step
-from .surfaces import STEEP, missed_contact, steep_contact
 
 __all__ = ["OUTPUT_NAMES", "RESIDUAL_LIMIT", "CoSimulation"]
 
@@ -103,7 +103,8 @@ class CoSimulation:
         self._inputs = self.model.start_inputs
         self._state: State | None = None
         self._stale = True
-        self._remarked = self._missed = self._steep = self._away = False
+        self._remarked = False
+        self._watch = PlaceWatch()
         self._backup = np.empty(0)
         self._clear_clock()
 
@@ -289,19 +290,7 @@ class CoSimulation:
             )
 
     def _check_place(self, overlap: float, angle: float) -> None:
-        if overlap > 0.0 and not self._missed:
-            self.warnings.append(missed_contact(overlap, self.steps))
-        if angle > STEEP and not self._steep:
-            self.warnings.append(steep_contact(angle, self.steps))
-        # Not again for every communication step that it lasts.
-        self._missed, self._steep = overlap > 0.0, angle > STEEP
-        away = self._inputs.lateral_shift != self.model.start_inputs.lateral_shift
-        if away and not self._away and self.model.geometry.shaped and self.model.contact.rows == 1:
-            self.warnings.append(
-                "the contact keeps the radii of the case's lateral_shift: a Hertz spring and a Winkler bedding follow "
-                "a live lateral_shift in height alone; a half-space follows it in shape"
-            )
-            self._away = True
+        self.warnings += self._watch.look(self.model, self._inputs, overlap=overlap, angle=angle, step=self.steps)
 
     def output(self, name: str) -> float | int | bool:
         """Value of an output port at the present communication point.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from time import perf_counter
 from typing import Any
@@ -16,10 +16,10 @@ from ..errors import ParameterError, WheelrailError
 from .cosimulation import COUNTS, LARGEST, OUTPUT_NAMES, REACHED, RESIDUAL_LIMIT
 from .inputs import Inputs
 from .model import Model
+from .place_watch import PlaceWatch
 from .start import height_for_load, start
 from .state import ANGLE, FORCE, FORCE_X, FORCE_Y, MISSED, RESIDUAL, RESULTS, SCALARS, State
 from .step import step
-from .surfaces import STEEP, missed_contact, steep_contact
 
 __all__ = ["BLOCK", "Simulation", "Statistics", "simulate", "stand_alone_inputs", "step_count"]
 
@@ -178,7 +178,7 @@ class Simulation:
         self.steps = step_count(duration=duration, dt=model.dt)
         self.statistics = Statistics() if statistics is None else statistics
         self._at_start = state is None
-        self._said: set[Callable[[float, int], str]] = set()
+        self._watch = PlaceWatch()
         self.state = start(model, self.inputs) if state is None else state
         if self._at_start and model.tangential is not None:
             for remark in model.tangential.remarks:
@@ -217,7 +217,9 @@ class Simulation:
     def _block(self, rows: NDArray) -> dict[str, NDArray]:
         numbers = rows[:, 0].astype(np.int64)
         self._judge(numbers, rows[:, FORCE], rows[:, RESIDUAL])
-        self._judge_place(numbers, rows[:, MISSED], rows[:, ANGLE])
+        overlap, angle = float(rows[:, MISSED].max()), float(np.abs(rows[:, ANGLE]).max())
+        for line in self._watch.look(self.model, self.inputs, overlap=overlap, angle=angle, step=int(numbers[-1])):
+            _log.warning("%s", line)
         block: dict[str, NDArray] = {
             "step": numbers,
             "time": numbers * self.model.dt,
@@ -249,17 +251,6 @@ class Simulation:
                 numbers[first],
                 numbers[first] * self.model.dt,
             )
-
-    def _judge_place(self, numbers: NDArray, overlap: NDArray, angle: NDArray) -> None:
-        # Once is enough: missed_overlap and contact_angle tell the rest.
-        for word, found, values in (
-            (missed_contact, overlap > 0.0, overlap),
-            (steep_contact, np.abs(angle) > STEEP, angle),
-        ):
-            if word not in self._said and np.any(found):
-                first = int(np.argmax(found))
-                _log.warning("%s", word(float(values[first]), int(numbers[first])))
-                self._said.add(word)
 
     def collect(self) -> dict[str, NDArray]:
         """Run to the end and return the blocks joined; for runs that fit into memory."""

@@ -13,27 +13,7 @@ from ..contact.geometry import ContactPlace
 from .inputs import Inputs
 from .model import Model
 
-__all__ = ["STEEP", "Surfaces", "missed_contact", "steep_contact", "total_shift"]
-
-STEEP = 0.15
-"""Contact angle in rad from which normal and vertical forces differ by more than a percent."""
-
-
-def steep_contact(angle: float, step: int) -> str:
-    """Word the message about a contact that is not nearly level; angle in rad."""
-    return (
-        f"the contact angle is {angle:.3g} rad at step {step}: the force normal to the contact is taken for the "
-        "vertical one, and its lateral part is left out"
-    )
-
-
-def missed_contact(overlap: float, step: int) -> str:
-    """Word the message about a contact that is not computed; overlap in m."""
-    return (
-        f"wheel and rail also touch outside of the potential contact area (step {step}, overlap {1e6 * overlap:.3g} um "
-        "without deformation): what this second contact bears is left out; a half-space with a wider contact.width may "
-        "take it in"
-    )
+__all__ = ["Surfaces", "total_shift"]
 
 
 def total_shift(model: Model, inputs: Inputs) -> float:

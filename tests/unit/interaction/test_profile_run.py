@@ -9,7 +9,6 @@ from wheelrail.interaction.build import build_model, hertz_of
 from wheelrail.interaction.cosimulation import CoSimulation
 from wheelrail.interaction.model_file import load_model, save_model
 from wheelrail.interaction.simulate import simulate
-from wheelrail.interaction.start import start
 
 CASE = """
 [simulation]
@@ -151,16 +150,22 @@ def test_what_is_out_of_reach_is_said():
     assert "contact angle is 0.372 rad" in warning
 
 
-def test_a_second_contact_beside_the_grid_is_reported():
-    built = model(S1002.format(shift=-2.9e-3), width=41)
-    place = built.geometry.place(-2.9e-3)
-    assert len(place.others) >= 1
-    narrow = model(S1002.format(shift=-2.9e-3), width=5)
-    with pytest.raises(ContactGridError):  # and it would miss the other one
-        start(narrow, narrow.start_inputs)
-    run = outputs(built)
-    assert run.output("contact_points") == 1 + len(place.others)
-    assert run.output("missed_overlap") == 0.0
+def test_a_second_contact_beside_the_grid_is_reported(caplog):
+    wide, narrow = (model(S1002.format(shift=1.9e-3), width=width) for width in (41, 15))
+    place = wide.geometry.place(1.9e-3)
+    first = next(other for other in place.others if other.gap < 1e-4)
+    run, missing = outputs(wide), outputs(narrow)
+    assert run.output("contact_points") == missing.output("contact_points") == 2
+    assert (run.output("missed_overlap"), run.warnings) == (0.0, [])
+    # The overlap of rigid bodies that have approached: the approach less the gap.
+    assert missing.output("missed_overlap") == pytest.approx(missing.output("approach") - first.gap, rel=1e-12)
+    assert missing.output("missed_overlap") > 30e-6
+    (warning,) = missing.warnings
+    assert "also touch outside of the potential contact area" in warning
+    list(simulate(narrow, duration=0.005, record=["force_z"], block=20))
+    assert sum("also touch outside" in record.message for record in caplog.records) == 1
+    # With the second contact in the grid, the first one bears less.
+    assert run.output("approach") < missing.output("approach")
 
 
 @pytest.mark.parametrize("normal", ["winkler", "hertz"])
