@@ -234,3 +234,25 @@ def test_point_contact_is_explained():
     text = explain(case_from_dict(case))
     assert "contact spring C (Mindlin 1949)" in text
     assert "d mu / dt = -max(s, s0) / d_c (mu - mu_law(s))" in text
+
+
+@pytest.mark.parametrize(
+    ("keys", "reached"),
+    [
+        ('type = "dent"\non = "rail"\ndepth = 1e-4\nlength = 0.05\nposition = 0.5', True),
+        ('type = "dent"\non = "rail"\ndepth = 1e-4\nlength = 0.05\nposition = 200.0', False),
+        ('type = "dent"\non = "rail"\ndepth = 1e-4\nlength = 0.05\nposition = -2.0', False),
+        ('type = "rail-joint"\ngap = 5e-3\nposition = -2.0\nspacing = 2.5', True),
+        ('type = "wheel-flat"\nshape = "new"\nlength = 0.05\nangle = 6.0', True),
+    ],
+)
+def test_shapes_that_the_run_does_not_reach(keys, reached):
+    case = parse_case(default_case_text() + f"\n[[excitation]]\n{keys}\n")  # 11 m
+    assert ("does not come under the wheel" in explain(case)) is not reached
+
+
+def test_a_shape_across_is_seen_by_the_half_space_alone():
+    dent = '[[excitation]]\ntype = "dent"\non = "rail"\ndepth = 1e-4\nlength = 0.05\nposition = 0.5\nwidth = 0.01\n'
+    assert "looks at the line at the contact point alone" in " ".join(
+        explain(parse_case(default_case_text() + dent)).split()
+    )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from wheelrail.case import Case
 from wheelrail.case.excitations import Measured, Spectrum
 from wheelrail.contact.hertz import HertzContact
 from wheelrail.excitation.prepare import prepare_source
-from wheelrail.excitation.sources import CoherentSpectrum, SurfaceLines
+from wheelrail.excitation.sources import CoherentSpectrum, Irregularity, SurfaceLines
 from wheelrail.interaction.contacts import geometry_of, view_of
 
 __all__ = ["explain_excitation"]
@@ -48,6 +49,8 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
             )
         elif isinstance(source, SurfaceLines | CoherentSpectrum):
             warnings += [f"excitation #{number}: {line}" for line in _beyond_the_lines(case, source, hertz)]
+        if isinstance(source, Irregularity):
+            warnings += [f"excitation #{number}: {line}" for line in _out_of_reach(case, source)]
         covered = source.covered()
         if covered is not None:
             first, last = covered
@@ -68,6 +71,17 @@ def explain_excitation(case: Case, hertz: HertzContact, warnings: list[str]) -> 
                 warnings.append(f"excitation #{number}: {note}")
     bays = "; only the track's bays excite" if case.track.model != "rigid" else ""
     return lines or [f"none: smooth wheel and rail{bays}"]
+
+
+def _out_of_reach(case: Case, source: Irregularity) -> Iterator[str]:
+    """Say that a flat, joint or dent does not come under the wheel in the run."""
+    begin = case.simulation.start_position
+    end = begin + case.simulation.duration * case.simulation.speed
+    origin = source.origin
+    if source.period is not None:  # the first one after the beginning
+        origin += math.ceil((begin - source.origin - source.positions[-1]) / source.period) * source.period
+    if origin + source.positions[-1] < begin or origin + source.positions[0] > end:
+        yield f"the {source.name} does not come under the wheel, which rolls from {begin:g} m to {end:g} m"
 
 
 def _beyond_the_lines(case: Case, source: SurfaceLines | CoherentSpectrum, hertz: HertzContact) -> Iterator[str]:
