@@ -1,7 +1,7 @@
 """Impact forces of a wheel flat against speed, newly formed and rounded (Pieringer 2011, section 5.2, figure 5.2).
 
 The flat is 0.9 mm deep, rounded 0.1 m long; 117.7 kN, 30 to 100 km/h, and it comes down at places all over a sleeper
-bay (40 with --full, as in the thesis; by default 8 and fewer speeds).
+bay (40 with --full, as in the thesis; by default 5 and fewer speeds).
 
 The thesis: the rounded flat's largest force has a local maximum near 40 km/h, falls to about 75 km/h and rises again
 above 90, spreading more and more with the place of the impact; the new flat is worse at high speed, and the wheel
@@ -23,7 +23,7 @@ HERE = Path(__file__).parent
 RADIUS, DEPTH, SPACING = 0.45, 0.9e-3, 0.65  # m
 START, FIRST, AFTER = 1.3, 2.6, 0.4  # m: start of the run, first place of impact, way after the last
 SHAPES = {"rounded": (0.1, BLUE), "new": (math.sqrt(8.0 * RADIUS * DEPTH), ORANGE)}
-SPEEDS, PLACES = (30, 40, 60, 75, 90, 100), 8  # km/h, in a bay
+SPEEDS, PLACES = (30, 40, 60, 75, 90, 100), 5  # km/h, in a bay
 ALL_SPEEDS, ALL_PLACES = tuple(range(30, 101, 5)), 40
 
 
