@@ -24,6 +24,7 @@ LONG = """
 """
 
 
+@pytest.mark.slow
 def test_one_worker_four_and_none_give_the_same_bytes(study_of, tmp_path):
     study, found = study_of(BROKEN), []
     for workers in (0, 1, 4):
@@ -48,6 +49,7 @@ def test_a_scheduler_that_is_not_there_is_refused(study_of, tmp_path, monkeypatc
         run_study(study_of(BROKEN), tmp_path / "study.nc", scheduler="tcp://127.0.0.1:9")
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_fails_its_point_only(study_of, tmp_path):
     study = study_of('[vary]\n"load.preload" = [50e3, 60e3, 70e3]')
     summary = run_study(study, tmp_path / "study.nc", workers=1, measure=die_at_60_kn)
@@ -80,6 +82,7 @@ def test_killed_at_half_and_continued_it_gives_the_same_bytes(study_of, tmp_path
     assert path.read_bytes() == (tmp_path / "whole.nc").read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="no signals to another process")
 @pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, "2"), (signal.SIGTERM, "0")])
 def test_stopped_it_says_how_to_continue_and_nothing_else(study_of, tmp_path, number, workers):
