@@ -5,7 +5,7 @@ bay (40 with --full, as in the thesis; by default 5 and fewer speeds).
 
 The thesis: the rounded flat's largest force has a local maximum near 40 km/h, falls to about 75 km/h and rises again
 above 90, spreading more and more with the place of the impact; the new flat is worse at high speed, and the wheel
-leaves the rail. Here the track and the wheel are other ones, and the dip is near 90 km/h.
+leaves the rail. Here the track and the wheel are other ones, and the dip is near 85 km/h.
 """
 
 import argparse
