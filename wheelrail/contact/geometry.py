@@ -92,8 +92,8 @@ class ContactGeometry(Protocol):
         """Find the place of first touch for a lateral shift of the wheel on the rail, m."""
         ...
 
-    def distance(self, shift: float, x: NDArray, y: NDArray) -> NDArray:
-        """Undeformed distance in m around the place of first touch, shape (len(y), len(x))."""
+    def distance(self, shift: float, x: NDArray, y: NDArray) -> NDArray | None:
+        """Undeformed distance in m around the place of first touch, shape (len(y), len(x)); None if not `shaped`."""
         ...
 
     def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
@@ -133,9 +133,8 @@ class ConstantGeometry:
         """Return the crown of the rail and what of the wheel is above it."""
         return Place(self.y_wheel - shift, self.y_rail, 0.0, self.rolling_radius)
 
-    def distance(self, shift: float, x: NDArray, y: NDArray) -> NDArray:
-        """Not available: the contact model has the radii (``NotImplementedError``)."""
-        raise NotImplementedError
+    def distance(self, shift: float, x: NDArray, y: NDArray) -> None:
+        """Return None: the contact model has the radii."""
 
     def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray]]:
         """Return a JSON-able description, and no arrays."""
